@@ -1,0 +1,8 @@
+//! From a robot description to specialised identification models.
+//!
+//! The way of the data: text -> [`describe`] -> mechanism (links in modified Denavit-Hartenberg
+//! frames) -> expression graph of D, P, R, h, dh -> base parameters -> emitted Rust, or the
+//! interpreter over the same graph.
+
+pub mod catalogue;
+pub mod describe;

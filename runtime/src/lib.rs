@@ -1,0 +1,11 @@
+//! Identification of robot dynamics from measured logs.
+//!
+//! The way of the data: log -> [`log::Recording`] -> zero-phase filters ([`signal`]) ->
+//! regressor, decimated in parallel ([`observe`]) -> least squares ([`estimate`]) -> report
+//! ([`report`]), after M. Gautier, "A comparison of filtered models for dynamic identification of
+//! robots" (1996). The crate is generic over a robot ([`model::IdentificationModel`]); it never
+//! sees a description.
+
+pub mod lane;
+pub mod model;
+pub mod settings;

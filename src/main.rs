@@ -1,0 +1,2 @@
+//! idim
+fn main() {}
