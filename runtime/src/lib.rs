@@ -7,5 +7,6 @@
 //! sees a description.
 
 pub mod lane;
+pub mod log;
 pub mod model;
 pub mod settings;
