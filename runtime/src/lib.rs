@@ -10,3 +10,4 @@ pub mod lane;
 pub mod log;
 pub mod model;
 pub mod settings;
+pub mod signal;

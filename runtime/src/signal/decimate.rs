@@ -1,0 +1,188 @@
+//! Parallel decimation: one low-pass for all signals, then one sample in n_d.
+
+use super::SignalError;
+use super::design::chebyshev1;
+use super::difference::difference_at;
+use super::planar::{LANES, Signals};
+use super::zero_phase::ZeroPhase;
+use crate::settings::Edges;
+
+/// Order of the low-pass, as in Matlab's and SciPy's `decimate`.
+const ORDER: usize = 8;
+
+/// Pass-band ripple, dB, as in Matlab's and SciPy's `decimate`.
+const RIPPLE_DB: f64 = 0.05;
+
+/// Cut-off of the low-pass relative to the half rate after decimation, as in both.
+const CUT_OFF: f64 = 0.8;
+
+/// The operator `fpd` of Gautier 1996, section 6.2: a zero-phase Chebyshev I low-pass of order 8
+/// with 0.05 dB ripple, cut-off \\( \omega_{fp} = 0.8 (\omega_c / 2) / n_d \\), at the full rate,
+/// then one sample in `n_d`. A ratio of 1 leaves signals unchanged.
+#[derive(Clone, Debug)]
+pub struct Decimator {
+    filter: Option<ZeroPhase>,
+    ratio: usize,
+    edges: Edges,
+    rate_hz: f64,
+}
+
+impl Decimator {
+    /// Decimation by `ratio` of signals sampled at `rate_hz`.
+    ///
+    /// # Errors
+    /// [`SignalError::Ratio`] if the ratio is zero.
+    pub fn new(ratio: usize, rate_hz: f64, edges: Edges) -> Result<Self, SignalError> {
+        let filter = match ratio {
+            0 => return Err(SignalError::Ratio),
+            1 => None,
+            _ => {
+                let cascade = chebyshev1(ORDER, RIPPLE_DB, CUT_OFF / ratio as f64, 2.0)?;
+                Some(ZeroPhase::new(cascade, ORDER, edges))
+            }
+        };
+        Ok(Decimator {
+            filter,
+            ratio,
+            edges,
+            rate_hz,
+        })
+    }
+
+    /// Cut-off of the low-pass, Hz.
+    pub fn cutoff_hz(&self) -> f64 {
+        CUT_OFF * self.rate_hz / (2.0 * self.ratio as f64)
+    }
+
+    /// Which of `samples` samples are kept.
+    pub fn kept(&self, samples: usize) -> impl ExactSizeIterator<Item = usize> + Clone {
+        let first = match self.edges {
+            Edges::Scipy => 0,
+            // nbeg = r - (r*ceil(n/r) - n) counts from 1.
+            Edges::Matlab => (samples + self.ratio - 1) % self.ratio,
+        };
+        (first..samples).step_by(self.ratio)
+    }
+
+    /// The low-passed and decimated signals.
+    ///
+    /// # Errors
+    /// [`SignalError::TooShort`].
+    pub fn values<S: Signals + ?Sized>(&self, signals: &S) -> Result<Vec<Vec<f64>>, SignalError> {
+        self.read(signals, |filtered, lane, i| filtered[i][lane])
+    }
+
+    /// The decimated derivatives of the low-passed signals, per second: the difference is taken
+    /// at the full rate, after the low-pass (Gautier 1996, eqs. 19 and 23).
+    ///
+    /// # Errors
+    /// [`SignalError::TooShort`].
+    pub fn rates<S: Signals + ?Sized>(&self, signals: &S) -> Result<Vec<Vec<f64>>, SignalError> {
+        self.read(signals, |filtered, lane, i| {
+            difference_at(|k| filtered[k][lane], i, filtered.len(), self.rate_hz)
+        })
+    }
+
+    fn read<S: Signals + ?Sized>(
+        &self,
+        signals: &S,
+        value: impl Fn(&[[f64; LANES]], usize, usize) -> f64 + Sync,
+    ) -> Result<Vec<Vec<f64>>, SignalError> {
+        let kept = self.kept(signals.samples());
+        let reader = |group: &[[f64; LANES]], width: usize| {
+            let lane = |lane| kept.clone().map(|i| value(group, lane, i)).collect();
+            (0..width).map(lane).collect()
+        };
+        match &self.filter {
+            Some(filter) => filter.read(signals, reader),
+            None => Ok(unfiltered(signals, reader)),
+        }
+    }
+}
+
+/// Hands all signals to `reader` as they are.
+fn unfiltered<S: Signals + ?Sized, T>(
+    signals: &S,
+    reader: impl Fn(&[[f64; LANES]], usize) -> Vec<T>,
+) -> Vec<T> {
+    let mut group = vec![[0.0; LANES]; signals.samples()];
+    let mut all = Vec::with_capacity(signals.count());
+    for first in (0..signals.count()).step_by(LANES) {
+        let width = LANES.min(signals.count() - first);
+        for lane in 0..width {
+            signals.copy_to_lane(first + lane, lane, &mut group);
+        }
+        all.extend(reader(&group, width));
+    }
+    all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::central_difference;
+    use super::*;
+
+    #[test]
+    fn kept_samples_follow_matlab_or_scipy() {
+        let matlab = Decimator::new(10, 100.0, Edges::Matlab).unwrap();
+        assert_eq!(matlab.kept(4200).next(), Some(9));
+        assert_eq!(matlab.kept(4200).len(), 420);
+        // EMPS: 24 792 samples, nbeg = 2.
+        assert_eq!(matlab.kept(24_792).next(), Some(1));
+        assert_eq!(matlab.kept(24_792).len(), 2480);
+        assert_eq!(matlab.kept(1).next(), Some(0));
+        assert_eq!(matlab.kept(0).next(), None);
+        let scipy = Decimator::new(10, 100.0, Edges::Scipy).unwrap();
+        assert_eq!(scipy.kept(4200).next(), Some(0));
+        assert_eq!(scipy.kept(4201).len(), 421);
+    }
+
+    #[test]
+    fn a_ratio_of_one_changes_nothing() {
+        let series = vec![vec![1.0, -2.0, 3.5]; 11];
+        let decimator = Decimator::new(1, 100.0, Edges::Scipy).unwrap();
+        assert_eq!(decimator.values(series.as_slice()).unwrap(), series);
+        let rates = decimator.rates(series.as_slice()).unwrap();
+        assert_eq!(rates[10], central_difference(&series[10], 100.0));
+    }
+
+    #[test]
+    fn slow_signals_pass_and_fast_ones_do_not() {
+        let wave = |hz: f64| -> Vec<f64> {
+            (0..3000)
+                .map(|i| (std::f64::consts::TAU * hz * f64::from(i) / 1000.0).sin())
+                .collect()
+        };
+        let decimator = Decimator::new(10, 1000.0, Edges::Scipy).unwrap();
+        assert_eq!(decimator.cutoff_hz(), 40.0);
+        let kept = decimator
+            .values([wave(5.0), wave(80.0)].as_slice())
+            .unwrap();
+        let middle = 50..250;
+        for (row, i) in middle.clone().zip(decimator.kept(3000).skip(middle.start)) {
+            assert!((kept[0][row] - wave(5.0)[i]).abs() < 0.012);
+            assert!(kept[1][row].abs() < 1e-4);
+        }
+    }
+
+    #[test]
+    fn differentiation_and_low_pass_commute_away_from_the_edges() {
+        let wave: Vec<f64> = (0..6000).map(|i| (0.02 * f64::from(i)).sin()).collect();
+        let decimator = Decimator::new(8, 100.0, Edges::Matlab).unwrap();
+        let rates = decimator.rates(std::slice::from_ref(&wave)).unwrap();
+        let values = decimator
+            .values([central_difference(&wave, 100.0)].as_slice())
+            .unwrap();
+        for row in 250..500 {
+            assert!((rates[0][row] - values[0][row]).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn a_ratio_of_zero_is_an_error() {
+        assert_eq!(
+            Decimator::new(0, 100.0, Edges::Scipy).unwrap_err(),
+            SignalError::Ratio
+        );
+    }
+}
