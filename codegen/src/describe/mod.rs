@@ -3,8 +3,67 @@
 //! Reading collects [`Diagnostic`]s and goes on; [`check`] decides. URDF and modified
 //! Denavit-Hartenberg tables end in the same type; nothing after this module reads text.
 
+pub mod angle;
+pub mod check;
+pub mod code;
 pub mod description;
 pub mod diagnostic;
+mod expression;
+mod findings;
+pub mod identifier;
+mod source;
+mod suggest;
+mod toml;
+mod urdf;
 
 pub use description::*;
 pub use diagnostic::{Diagnostic, Severity, Span};
+pub use source::Kind;
+
+use findings::finding;
+use std::path::Path;
+
+/// Reads a robot from a file: `.urdf`, or `.toml` (which may name a URDF beside it).
+///
+/// # Errors
+/// Every mistake that was found, in the order of the text; warnings are in the description.
+pub fn read_path(path: &Path) -> Result<Description, Vec<Diagnostic>> {
+    let file = path.display().to_string();
+    let text = source::text_of(path, &file)?;
+    let kind = Kind::of(path, &text).map_err(|found| vec![found.on_file(&file)])?;
+    let folder = path.parent().unwrap_or_else(|| Path::new(""));
+    let load = |named: &str| {
+        let path = folder.join(named);
+        // The place in the file is lost here; what remains says enough to go and look.
+        source::text_of(&path, named).map_err(|all| match all.first() {
+            Some(first) if first.span.line > 0 => {
+                format!("line {}: {}", first.span.line, first.message)
+            }
+            Some(first) => first.message.clone(),
+            None => String::new(),
+        })
+    };
+    read_text(&text, &file, kind, &load)
+}
+
+/// Reads a robot from a text that the user knows as `file`; `load` gives the text of the URDF that
+/// a TOML names, by the path as it is written there.
+///
+/// # Errors
+/// Every mistake that was found, in the order of the text; warnings are in the description.
+pub fn read_text(
+    text: &str,
+    file: &str,
+    kind: Kind,
+    load: &dyn Fn(&str) -> Result<String, String>,
+) -> Result<Description, Vec<Diagnostic>> {
+    let text = source::without_mark(text);
+    if text.len() as u64 > source::MAX_BYTES {
+        let message = format!("larger than {} MiB", source::MAX_BYTES >> 20);
+        return Err(vec![finding(code::FILE_TOO_LARGE, message).on_file(file)]);
+    }
+    match kind {
+        Kind::Urdf => toml::read_bare(text, file),
+        Kind::Toml => toml::read(text, file, load),
+    }
+}

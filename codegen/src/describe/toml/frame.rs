@@ -1,0 +1,151 @@
+//! Where the joints are: `[[joint]]` rows here, or a URDF with `[joint.NAME]` tables beside it.
+
+use super::super::code;
+use super::super::description::{Geometry, Limits, Motion, Snap, UrdfTree};
+use super::super::diagnostic::Diagnostic;
+use super::super::findings::{Findings, finding};
+use super::super::suggest;
+use super::super::urdf;
+use super::joint::{self, Extras};
+use super::rows;
+use super::table::{Table, Value, in_text_order, wrong_type};
+use toml::de::DeValue;
+
+/// Geometry and what its joints say beside it.
+pub(super) struct Frame {
+    /// Rows or tree.
+    pub(super) geometry: Geometry,
+    /// Effects and gains, one entry per joint of the geometry.
+    pub(super) extras: Vec<Extras>,
+    /// Angles taken as multiples of pi/2.
+    pub(super) snaps: Vec<Snap>,
+    /// The name that the URDF gives the robot.
+    pub(super) name: Option<String>,
+    /// What was noticed in the URDF.
+    pub(super) warnings: Vec<Diagnostic>,
+}
+
+/// Reads the rows of the table itself.
+pub(super) fn from_rows(
+    table: &mut Table<'_>,
+    lengths: &[(String, f64)],
+    to: &mut Findings,
+) -> Frame {
+    let values: Vec<Value<'_>> = match table.get("joint").map(|value| (value, value.get_ref())) {
+        Some((_, DeValue::Array(values))) => values.iter().collect(),
+        Some((value, DeValue::Table(_))) => {
+            let message = "[joint.NAME] needs `urdf = \"...\"`, which says where the joints are";
+            let help = "the rows of a Denavit-Hartenberg table are written [[joint]]";
+            to.error(
+                value.span().start,
+                finding(code::KEY_MISSING, message).help(help),
+            );
+            Vec::new()
+        }
+        Some((value, other)) => {
+            wrong_type(value, "`joint`", "written [[joint]]", other, to);
+            Vec::new()
+        }
+        None => Vec::new(),
+    };
+    let read = rows::read(&values, lengths, to);
+    Frame {
+        geometry: Geometry::Mdh(read.rows),
+        extras: read.extras,
+        snaps: read.snaps,
+        name: None,
+        warnings: Vec::new(),
+    }
+}
+
+/// Reads the URDF and the `[joint.NAME]` tables.
+pub(super) fn from_urdf(
+    table: &mut Table<'_>,
+    text: &str,
+    file: &str,
+    to: &mut Findings,
+) -> Result<Frame, Vec<Diagnostic>> {
+    let robot = urdf::read(text, file)?;
+    let mut tree = robot.tree;
+    let mut extras: Vec<Extras> = tree.joints.iter().map(|_| Extras::default()).collect();
+    match table.get("joint").map(|value| (value, value.get_ref())) {
+        Some((_, DeValue::Table(joints))) => {
+            for (name, offset, value) in in_text_order(joints) {
+                companion(name, offset, value, &mut tree, &mut extras, to);
+            }
+        }
+        Some((value, _)) => {
+            let message = "[[joint]] rows and `urdf` both say where the joints are";
+            let help = "beside a URDF, settings of a joint are written [joint.NAME]";
+            to.error(
+                value.span().start,
+                finding(code::KEYS_EXCLUDE, message).help(help),
+            );
+        }
+        None => {}
+    }
+    Ok(Frame {
+        geometry: Geometry::Urdf(tree),
+        extras,
+        snaps: robot.snaps,
+        name: Some(robot.name),
+        warnings: robot.warnings,
+    })
+}
+
+/// Reads one `[joint.NAME]`.
+fn companion(
+    name: &str,
+    offset: usize,
+    value: Value<'_>,
+    tree: &mut UrdfTree,
+    extras: &mut [Extras],
+    to: &mut Findings,
+) {
+    let Some(mut table) = Table::from_value(value, &format!("joint `{name}`"), to) else {
+        return;
+    };
+    let Some(index) = tree.joints.iter().position(|joint| joint.name == name) else {
+        let known: Vec<&str> = tree
+            .joints
+            .iter()
+            .map(|joint| joint.name.as_str())
+            .collect();
+        let message = format!("the URDF has no joint `{name}`");
+        let help = suggest::help(name, &known);
+        to.error(offset, finding(code::EFFECT_JOINT, message).help(help));
+        return;
+    };
+    let stated = joint::limits(&mut table, to);
+    let read = joint::extras(&mut table, to);
+    table.finish(to);
+    let joint = &mut tree.joints[index];
+    if joint.motion == Motion::Fixed && (read.effects.is_some() || read.gain.is_some()) {
+        let message = format!("joint `{name}` does not move: it has neither effects nor a gain");
+        to.error(offset, finding(code::EFFECT_JOINT, message));
+    }
+    let old = joint.limits;
+    joint.limits = Limits {
+        lower: stated.lower.or(old.lower),
+        upper: stated.upper.or(old.upper),
+        velocity: stated.velocity.or(old.velocity),
+        effort: stated.effort.or(old.effort),
+    };
+    if let (Some(lower), Some(upper)) = (joint.limits.lower, joint.limits.upper)
+        && lower > upper
+        && (stated.lower.is_none() || stated.upper.is_none())
+    {
+        let message = format!("joint `{name}`: lower {lower} is above upper {upper}");
+        let help = "one of the two is from the URDF";
+        to.error(offset, finding(code::LIMITS_REVERSED, message).help(help));
+    }
+    extras[index] = read;
+}
+
+/// The settings of the joints that move; one of a joint that does not is an error of its own.
+pub(super) fn of_moving<'e>(joints: &[(String, Motion)], extras: &'e [Extras]) -> Vec<&'e Extras> {
+    let moves = |(joint, extras): (&(String, Motion), &'e Extras)| {
+        (joint.1 != Motion::Fixed).then_some(extras)
+    };
+    joints.iter().zip(extras).filter_map(moves).collect()
+}

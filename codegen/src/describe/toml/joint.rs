@@ -1,0 +1,85 @@
+//! What a `[[joint]]` row or a `[joint.NAME]` table says beside the geometry.
+
+use super::super::code;
+use super::super::description::Limits;
+use super::super::findings::{Findings, finding};
+use super::effects::{self, Wanted};
+use super::table::{Table, Value};
+use super::value;
+use toml::de::DeValue;
+
+/// Effects and gain of one joint.
+#[derive(Default)]
+pub(super) struct Extras {
+    /// Effects in place of the default ones, if stated.
+    pub(super) effects: Option<Vec<Wanted>>,
+    /// Drive gain with its place, if stated.
+    pub(super) gain: Option<(f64, usize)>,
+}
+
+/// Reads `effects` and `gain`.
+pub(super) fn extras(table: &mut Table<'_>, to: &mut Findings) -> Extras {
+    let effects = table
+        .get("effects")
+        .and_then(|value| effects::wanted(value, &table.path("effects"), to));
+    let gain = table.get("gain").and_then(|value| {
+        let gain = value::number(value, &table.path("gain"), to)?;
+        Some((gain, value.span().start))
+    });
+    Extras { effects, gain }
+}
+
+/// Reads `limits`: `[lower, upper]`, or a table of lower, upper, velocity, effort.
+pub(super) fn limits(table: &mut Table<'_>, to: &mut Findings) -> Limits {
+    let Some(value) = table.get("limits") else {
+        return Limits::default();
+    };
+    let what = table.path("limits");
+    let limits = match value.get_ref() {
+        DeValue::Array(_) => range(value, &what, to),
+        _ => keyed(value, &what, to),
+    };
+    let limits = limits.unwrap_or_default();
+    if let (Some(lower), Some(upper)) = (limits.lower, limits.upper)
+        && lower > upper
+    {
+        let message = format!("{what}: lower {lower} is above upper {upper}");
+        to.error(value.span().start, finding(code::LIMITS_REVERSED, message));
+    }
+    limits
+}
+
+fn range(value: Value<'_>, what: &str, to: &mut Findings) -> Option<Limits> {
+    let numbers = value::numbers(value, what, to)?;
+    if let [lower, upper] = numbers[..] {
+        return Some(Limits {
+            lower: Some(lower),
+            upper: Some(upper),
+            ..Limits::default()
+        });
+    }
+    let message = format!(
+        "{what} has {} numbers instead of lower and upper",
+        numbers.len()
+    );
+    to.error(value.span().start, finding(code::NUMBER_COUNT, message));
+    None
+}
+
+fn keyed(value: Value<'_>, what: &str, to: &mut Findings) -> Option<Limits> {
+    const POSITIVE: (f64, f64) = (f64::MIN_POSITIVE, f64::MAX);
+    const ANY: (f64, f64) = (f64::MIN, f64::MAX);
+    let mut table = Table::from_value(value, what, to)?;
+    let mut read = |key, range| {
+        let value = table.get(key)?;
+        value::number_within(value, &table.path(key), range, to)
+    };
+    let limits = Limits {
+        lower: read("lower", ANY),
+        upper: read("upper", ANY),
+        velocity: read("velocity", POSITIVE),
+        effort: read("effort", POSITIVE),
+    };
+    table.finish(to);
+    Some(limits)
+}

@@ -1,0 +1,138 @@
+//! Robots in TOML: a modified Denavit-Hartenberg table, or the companion of a URDF.
+//!
+//! The text is walked with the place of every key and value at hand, so that several mistakes are
+//! reported at once, each with line, column and the nearest word that would have been right.
+
+mod effects;
+mod frame;
+mod joint;
+mod named;
+mod options;
+mod rest;
+mod rows;
+mod table;
+mod value;
+
+#[cfg(test)]
+mod tests;
+
+use super::check;
+use super::code;
+use super::description::Description;
+use super::diagnostic::Diagnostic;
+use super::findings::{Findings, finding};
+use super::identifier;
+use super::source;
+use ::toml::de::DeTable;
+use rest::Rest;
+use sha2::{Digest, Sha256};
+use table::Table;
+
+/// Syntax errors shown at once: later ones are mostly consequences.
+const MAX_SYNTAX_ERRORS: usize = 3;
+
+type Load<'l> = &'l dyn Fn(&str) -> Result<String, String>;
+
+/// Reads a TOML text; `load` gives the text of the URDF that it names.
+pub(super) fn read(text: &str, file: &str, load: Load) -> Result<Description, Vec<Diagnostic>> {
+    let mut findings = Findings::new(text, file);
+    let (document, mistakes) = DeTable::parse_recoverable(text);
+    for mistake in mistakes.iter().take(MAX_SYNTAX_ERRORS) {
+        let offset = mistake.span().map_or(0, |span| span.start);
+        let first_line = mistake.message().lines().next().unwrap_or("not TOML");
+        findings.error(offset, finding(code::TOML_SYNTAX, first_line));
+    }
+    if findings.errors() > 0 {
+        return Err(findings.decide().err().unwrap_or_default());
+    }
+    let mut table = Table::new(document.get_ref(), "", 0);
+    let named = table.get("urdf").and_then(|value| {
+        Some((
+            value::text(value, "`urdf`", &mut findings)?,
+            value.span().start,
+        ))
+    });
+    let Some((path, offset)) = named else {
+        return describe(table, None, text, file, findings);
+    };
+    match load(path) {
+        Ok(urdf) => describe(table, Some((&urdf, path)), text, file, findings),
+        Err(why) => {
+            let message = format!("cannot read `{path}`: {why}");
+            let help = "a path is relative to the file that names it";
+            findings.error(offset, finding(code::FILE_UNREADABLE, message).help(help));
+            Err(findings.decide().err().unwrap_or_default())
+        }
+    }
+}
+
+/// Reads a URDF without a companion.
+pub(super) fn read_bare(urdf: &str, file: &str) -> Result<Description, Vec<Diagnostic>> {
+    let empty = DeTable::new();
+    let table = Table::new(&empty, "", 0);
+    describe(table, Some((urdf, file)), "", file, Findings::new("", file))
+}
+
+fn describe(
+    mut table: Table<'_>,
+    urdf: Option<(&str, &str)>,
+    text: &str,
+    file: &str,
+    mut to: Findings,
+) -> Result<Description, Vec<Diagnostic>> {
+    let lengths = table
+        .get("lengths")
+        .map(|value| named::lengths(value, &mut to));
+    let lengths = lengths.unwrap_or_default();
+    let name = table
+        .get("name")
+        .and_then(|value| value::text(value, "`name`", &mut to));
+    let frame = match urdf {
+        Some((urdf, urdf_file)) => match frame::from_urdf(&mut table, urdf, urdf_file, &mut to) {
+            Ok(frame) => frame,
+            Err(mut errors) => {
+                errors.extend(to.decide().err().unwrap_or_default());
+                return Err(errors);
+            }
+        },
+        None => frame::from_rows(&mut table, &lengths, &mut to),
+    };
+    let joints = check::joints(&frame.geometry);
+    check::something_moves(&joints, &mut to);
+    let rest = Rest::read(&mut table, &joints, &frame.extras, &lengths, &mut to);
+    table.finish(&mut to);
+    let mut warnings = to.decide()?;
+    warnings.extend(frame.warnings);
+    let name = name
+        .map(str::to_owned)
+        .or(frame.name)
+        .unwrap_or_else(|| source::stem(file));
+    Ok(Description {
+        name: identifier::robot_name(&name),
+        hash: hash(&[text, urdf.map_or("", |(urdf, _)| urdf)]),
+        gravity: rest.gravity,
+        lengths,
+        geometry: frame.geometry,
+        effects: rest.effects,
+        scaled: rest.scaled,
+        identify: rest.identify,
+        drives: rest.drives,
+        parameters: rest.parameters,
+        prior: rest.prior,
+        warnings,
+        snaps: frame.snaps,
+    })
+}
+
+/// SHA-256 of the texts one after the other, as `cat` and `sha256sum` give it.
+fn hash(texts: &[&str]) -> String {
+    let mut hasher = Sha256::new();
+    for text in texts {
+        hasher.update(text.as_bytes());
+    }
+    hasher
+        .finalize()
+        .iter()
+        .map(|byte| format!("{byte:02x}"))
+        .collect()
+}
