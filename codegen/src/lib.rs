@@ -6,3 +6,9 @@
 
 pub mod catalogue;
 pub mod describe;
+pub mod expr;
+
+pub mod derive;
+pub mod mechanism;
+pub mod base;
+pub mod robot;

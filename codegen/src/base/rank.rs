@@ -1,0 +1,102 @@
+//! Which columns are independent.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::BaseError;
+use crate::derive::Standard;
+
+/// The smallest gap between kept and dropped singular values that counts as a rank.
+const LEAST_GAP: f64 = 1e3;
+
+/// Kept and dropped columns.
+#[derive(Clone, Debug)]
+pub struct Split {
+    /// Independent columns, in the order in which they were chosen.
+    pub kept: Vec<usize>,
+    /// Columns that depend on the kept ones.
+    pub dependent: Vec<usize>,
+    /// Last kept over first dropped singular value of the scaled regressor.
+    pub gap: f64,
+}
+
+/// Splits the columns: the numeric rank comes from the singular values, the choice from the
+/// priority (columns earlier in it are kept).
+///
+/// # Errors
+/// [`BaseError::NoGap`] when the singular values do not fall off clearly.
+pub fn split(w: &DMatrix<f64>, priority: &[usize], all: &[Standard]) -> Result<Split, BaseError> {
+    let norms: Vec<f64> = w.column_iter().map(|column| column.norm()).collect();
+    let largest = norms.iter().fold(0.0, |a: f64, &b| a.max(b));
+    // A column without effect is rounding at most.
+    let live: Vec<usize> =
+        priority.iter().copied().filter(|&column| norms[column] > 1e-10 * largest).collect();
+    let columns: Vec<DVector<f64>> =
+        live.iter().map(|&column| w.column(column) / norms[column]).collect();
+    if columns.is_empty() {
+        return Ok(Split { kept: vec![], dependent: vec![], gap: f64::INFINITY });
+    }
+    let scaled = DMatrix::from_columns(&columns);
+    let (rank, gap, threshold) = numeric_rank(&scaled);
+    let residuals = orthogonalise(&columns, threshold);
+    let mut split = Split { kept: vec![], dependent: vec![], gap };
+    for (&column, &residual) in live.iter().zip(&residuals) {
+        if residual > threshold {
+            split.kept.push(column);
+        } else {
+            split.dependent.push(column);
+        }
+    }
+    if gap < LEAST_GAP || split.kept.len() != rank {
+        let columns = near(&live, &residuals, threshold, all);
+        return Err(BaseError::NoGap { gap, columns });
+    }
+    Ok(split)
+}
+
+/// The rank at the largest drop of the singular values, that drop, and a threshold between.
+fn numeric_rank(scaled: &DMatrix<f64>) -> (usize, f64, f64) {
+    let r = scaled.clone().qr().r();
+    let mut sigma: Vec<f64> = r.singular_values().iter().copied().collect();
+    sigma.sort_by(|a, b| b.total_cmp(a));
+    let floor = f64::EPSILON * sigma[0];
+    sigma.push(floor);
+    let mut best = (sigma.len() - 1, 0.0);
+    for rank in 1..sigma.len() {
+        let drop = sigma[rank - 1] / sigma[rank].max(floor);
+        if drop > best.1 {
+            best = (rank, drop);
+        }
+    }
+    let (rank, gap) = best;
+    (rank, gap, (sigma[rank - 1] * sigma[rank].max(floor)).sqrt())
+}
+
+/// What is left of each unit column after projection onto the kept ones before it
+/// (Gram-Schmidt, twice, which is enough for orthogonality to rounding).
+fn orthogonalise(columns: &[DVector<f64>], threshold: f64) -> Vec<f64> {
+    let mut basis: Vec<DVector<f64>> = Vec::new();
+    let mut residuals = Vec::with_capacity(columns.len());
+    for column in columns {
+        let mut rest = column.clone();
+        for _ in 0..2 {
+            for direction in &basis {
+                let along = direction.dot(&rest);
+                rest.axpy(-along, direction, 1.0);
+            }
+        }
+        let norm = rest.norm();
+        residuals.push(norm);
+        if norm > threshold {
+            basis.push(rest / norm);
+        }
+    }
+    residuals
+}
+
+/// Names of the columns whose residual is nearest to the threshold.
+fn near(live: &[usize], residuals: &[f64], threshold: f64, all: &[Standard]) -> Vec<String> {
+    let mut order: Vec<usize> = (0..live.len()).collect();
+    let distance = |index: usize| (residuals[index].max(f64::EPSILON) / threshold).ln().abs();
+    order.sort_by(|&a, &b| distance(a).total_cmp(&distance(b)));
+    order.into_iter().take(6).map(|index| all[live[index]].name.clone()).collect()
+}

@@ -1,0 +1,75 @@
+//! The regressor of all standard parameters on seeded random states.
+
+use nalgebra::DMatrix;
+use rand_pcg::Pcg64Mcg;
+use rand_pcg::rand_core::Rng;
+
+use crate::derive::Standard;
+use crate::expr::tape::{Batch, Tape};
+use crate::expr::{Expr, Graph};
+use crate::mechanism::{JointKind, Mechanism};
+
+/// Fixed, so that names and relations are the same on every run.
+const SEED: u128 = 0x6964_696d;
+
+/// Columns of D, one per standard parameter, rows joint by joint on enough states that random
+/// coincidence cannot hide a rank.
+pub fn explicit(graph: &Graph, mechanism: &Mechanism, standard: &[Standard]) -> DMatrix<f64> {
+    let n = mechanism.joints.len();
+    let len = 2 * standard.len() / n + 20;
+    let states = States::random(mechanism, len);
+    let entries: Vec<(usize, usize, Expr)> = standard
+        .iter()
+        .enumerate()
+        .flat_map(|(column, parameter)| {
+            parameter.columns.explicit.iter().map(move |&(joint, entry)| (joint, column, entry))
+        })
+        .collect();
+    let outputs: Vec<Expr> = entries.iter().map(|&(_, _, entry)| entry).collect();
+    let mut values = vec![0.0; outputs.len() * len];
+    Tape::new(graph, &outputs).run(&states.batch(), &mut values);
+    let mut w = DMatrix::zeros(n * len, standard.len());
+    for (index, &(joint, column, _)) in entries.iter().enumerate() {
+        for sample in 0..len {
+            w[(joint * len + sample, column)] = values[index * len + sample];
+        }
+    }
+    w
+}
+
+/// Random states, structure of arrays.
+#[derive(Clone, Debug)]
+pub struct States {
+    len: usize,
+    q: Vec<f64>,
+    qd: Vec<f64>,
+    qdd: Vec<f64>,
+}
+
+impl States {
+    /// Angles over the full turn, displacements within 1 m; speeds and accelerations of order 1,
+    /// so that inertial and gravity terms have the same weight.
+    pub fn random(mechanism: &Mechanism, len: usize) -> States {
+        let mut generator = Pcg64Mcg::new(SEED);
+        // 53 bits fill the mantissa; the range is [-1, 1).
+        let mut unit = || (generator.next_u64() >> 11) as f64 / (1u64 << 52) as f64 - 1.0;
+        let mut states = States { len, q: vec![], qd: vec![], qdd: vec![] };
+        for joint in &mechanism.joints {
+            let range = match joint.kind {
+                JointKind::Revolute => std::f64::consts::PI,
+                JointKind::Prismatic => 1.0,
+            };
+            for _ in 0..len {
+                states.q.push(range * unit());
+                states.qd.push(3.0 * unit());
+                states.qdd.push(5.0 * unit());
+            }
+        }
+        states
+    }
+
+    /// For a tape.
+    pub fn batch(&self) -> Batch<'_> {
+        Batch { len: self.len, q: &self.q, qd: &self.qd, qdd: &self.qdd }
+    }
+}

@@ -1,0 +1,15 @@
+//! One hash-consed expression graph for all outputs of a robot, and its readers.
+//!
+//! The graph knows no robot: inputs are numbered positions, velocities and accelerations. Its
+//! smart constructors are the optimiser; [`tape`] and the emitters read the same graph.
+
+pub mod angle;
+pub mod count;
+pub mod graph;
+pub mod rotate;
+pub mod schedule;
+pub mod tape;
+
+pub use angle::{Angle, AngleSum};
+pub use count::Operations;
+pub use graph::{Expr, Function, Graph, Input, Node};
