@@ -1,5 +1,38 @@
 //! From files as people have them to [`Recording`]s: checked, uniform in time, SI units.
+//!
+//! [`read`] follows one path: open ([`LogSpec`], gzip, separator) -> columns and units, with the
+//! help of the [`Companion`] -> rows of the part -> joint side of the drives -> checks -> uniform
+//! time grid. [`write()`] and [`onto_stamps`] lead back from results to files.
+//!
+//! This module owns every file format of measured data; filters and models begin at [`Recording`].
 
+mod checks;
+pub mod closed_loop;
+mod columns;
+pub mod companion;
+mod drives;
+pub mod error;
+mod grid;
+mod naming;
+mod read;
 pub mod recording;
+mod resample;
+mod source;
+pub mod spec;
+mod table;
+mod unit;
+mod write;
 
+#[cfg(test)]
+mod dirty;
+#[cfg(test)]
+mod real;
+
+pub use closed_loop::{Controller, Feedforward, Fourier, Law, Reference, Start};
+pub use companion::{ColumnSource, Companion};
+pub use error::{LogError, Problem};
+pub use read::{ReadOptions, read};
 pub use recording::Recording;
+pub use resample::onto_stamps;
+pub use spec::{LogSpec, Part, SpecError};
+pub use write::write;

@@ -1,0 +1,303 @@
+//! What a log's controller was told and did: the reference motion and the control law.
+//!
+//! Kept for the closed-loop simulation; nothing here evaluates them.
+
+use std::ops::Range;
+
+use serde::{Deserialize, Serialize};
+use toml::Spanned;
+
+use super::companion::{Mistake, positive};
+
+/// The commanded motion of a log.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(tag = "kind", rename_all = "snake_case")]
+pub enum Reference {
+    /// A truncated Fourier series per joint.
+    Fourier(Fourier),
+    /// The log's own `q1_ref..` columns.
+    Sampled {
+        /// One series per joint on the grid of the recording, rad or m.
+        q: Vec<Vec<f64>>,
+    },
+}
+
+impl Reference {
+    /// Number of joints.
+    pub fn joints(&self) -> usize {
+        match self {
+            Reference::Fourier(fourier) => fourier.center.len(),
+            Reference::Sampled { q } => q.len(),
+        }
+    }
+}
+
+/// \\( q_{ref}(t) = c + \sum_h s_h \sin(h \omega t) + k_h \cos(h \omega t) \\),
+/// \\( \omega = 2 \pi f_0 \\), h = 1, 2, ..; one row per joint, every row as long.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Fourier {
+    /// Base frequency, Hz.
+    pub f0_hz: f64,
+    /// The same motion so many times.
+    pub periods: f64,
+    /// Centre of each joint's motion, rad or m.
+    pub center: Vec<f64>,
+    /// Sine coefficients, joint by joint, rad or m.
+    pub sin: Vec<Vec<f64>>,
+    /// Cosine coefficients, joint by joint, rad or m.
+    pub cos: Vec<Vec<f64>>,
+}
+
+/// The control law: the only one known so far.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Law {
+    /// torque = kp (q_ref - q) + kd (qd_ref - qd) + feedforward, limited.
+    Pd,
+}
+
+/// What the controller adds without looking at the measured motion.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Feedforward {
+    /// Nothing.
+    #[default]
+    None,
+    /// Gravity torque of the description at the reference.
+    Gravity,
+    /// Inverse dynamics of the description along the reference, without friction and rotor inertia.
+    Rigid,
+}
+
+/// Where a simulation of the log begins.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Start {
+    /// On the reference: q(0) = q_ref(0), qd(0) = qd_ref(0).
+    #[default]
+    Reference,
+    /// Where the log begins.
+    Log,
+}
+
+/// The controller that a log was made with; one entry per joint in each list.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Controller {
+    /// The control law.
+    pub law: Law,
+    /// Position gains, N m/rad or N/m.
+    pub kp: Vec<f64>,
+    /// Velocity gains, N m s/rad or N s/m.
+    pub kd: Vec<f64>,
+    /// Feedforward.
+    pub feedforward: Feedforward,
+    /// Cut-off of the first-order low-pass on the backward difference of q, Hz; absent: exact qd.
+    pub velocity_filter_hz: Option<f64>,
+    /// Largest torque, N m or N; absent: unlimited.
+    pub torque_limit: Option<Vec<f64>>,
+    /// Where a simulation begins.
+    pub start: Start,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct RawReference {
+    kind: Spanned<String>,
+    f0_hz: Spanned<f64>,
+    #[serde(default)]
+    periods: Option<Spanned<f64>>,
+    center: Spanned<Vec<f64>>,
+    sin: Spanned<Vec<Vec<f64>>>,
+    cos: Spanned<Vec<Vec<f64>>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct RawController {
+    law: Law,
+    kp: Spanned<Vec<f64>>,
+    kd: Spanned<Vec<f64>>,
+    #[serde(default)]
+    feedforward: Feedforward,
+    velocity_filter_hz: Option<Spanned<f64>>,
+    torque_limit: Option<Spanned<Vec<f64>>>,
+    #[serde(default)]
+    start: Start,
+}
+
+impl RawReference {
+    pub(super) fn check(self) -> Result<Reference, Mistake> {
+        if self.kind.get_ref() != "fourier" {
+            let message = format!(
+                "kind = \"{}\" is not known; expected \"fourier\"",
+                self.kind.get_ref()
+            );
+            return Err((self.kind.span(), message));
+        }
+        let joints = self.center.get_ref().len();
+        let harmonics = self.sin.get_ref().first().map_or(0, Vec::len);
+        for (key, rows) in [("sin", &self.sin), ("cos", &self.cos)] {
+            let span = rows.span();
+            same_length(key, "rows", rows.get_ref().len(), joints, &span)?;
+            for row in rows.get_ref() {
+                same_length(key, "harmonics in each row", row.len(), harmonics, &span)?;
+                finite(key, row, &span)?;
+            }
+        }
+        finite("center", self.center.get_ref(), &self.center.span())?;
+        Ok(Reference::Fourier(Fourier {
+            f0_hz: positive("f0_hz", self.f0_hz)?,
+            periods: self
+                .periods
+                .map_or(Ok(1.0), |periods| positive("periods", periods))?,
+            center: self.center.into_inner(),
+            sin: self.sin.into_inner(),
+            cos: self.cos.into_inner(),
+        }))
+    }
+}
+
+impl RawController {
+    pub(super) fn check(self) -> Result<Controller, Mistake> {
+        let joints = self.kp.get_ref().len();
+        let lists = [
+            ("kp", Some(&self.kp)),
+            ("kd", Some(&self.kd)),
+            ("torque_limit", self.torque_limit.as_ref()),
+        ];
+        for (key, list) in lists {
+            let Some(list) = list else { continue };
+            let (span, values) = (list.span(), list.get_ref());
+            same_length(key, "entries", values.len(), joints, &span)?;
+            finite(key, values, &span)?;
+            if values.iter().any(|&value| value < 0.0) {
+                return Err((span, format!("{key} holds a negative value")));
+            }
+        }
+        Ok(Controller {
+            law: self.law,
+            kp: self.kp.into_inner(),
+            kd: self.kd.into_inner(),
+            feedforward: self.feedforward,
+            velocity_filter_hz: self
+                .velocity_filter_hz
+                .map(|cut_off| positive("velocity_filter_hz", cut_off))
+                .transpose()?,
+            torque_limit: self.torque_limit.map(Spanned::into_inner),
+            start: self.start,
+        })
+    }
+}
+
+fn same_length(
+    key: &str,
+    what: &str,
+    found: usize,
+    expected: usize,
+    span: &Range<usize>,
+) -> Result<(), Mistake> {
+    if found == expected {
+        return Ok(());
+    }
+    Err((
+        span.clone(),
+        format!("{key} has {found} {what}, expected {expected}"),
+    ))
+}
+
+fn finite(key: &str, values: &[f64], span: &Range<usize>) -> Result<(), Mistake> {
+    if values.iter().all(|value| value.is_finite()) {
+        return Ok(());
+    }
+    Err((span.clone(), format!("{key} holds NaN or infinity")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn reference(center: &str, sin: &str, cos: &str) -> Result<Reference, Mistake> {
+        let text = format!(
+            "kind = 'fourier'\nf0_hz = 0.1\nperiods = 2\ncenter = {center}\nsin = {sin}\ncos = {cos}"
+        );
+        toml::from_str::<RawReference>(&text).unwrap().check()
+    }
+
+    fn controller(text: &str) -> Result<Controller, String> {
+        let raw = toml::from_str::<RawController>(text).map_err(|e| e.message().to_owned())?;
+        raw.check().map_err(|(_, message)| message)
+    }
+
+    #[test]
+    fn reference_with_equal_rows_is_accepted() {
+        let found = reference("[0.0, 1]", "[[1.0], [2.0]]", "[[3.0], [4.0]]").unwrap();
+        assert_eq!(found.joints(), 2);
+    }
+
+    #[test]
+    fn reference_with_unequal_rows_says_which_list_and_how_many() {
+        for (center, sin, cos, message) in [
+            (
+                "[0.0]",
+                "[[1.0], [2.0]]",
+                "[[1.0]]",
+                "sin has 2 rows, expected 1",
+            ),
+            (
+                "[0.0]",
+                "[[1.0]]",
+                "[[1.0, 2.0]]",
+                "cos has 2 harmonics in each row, expected 1",
+            ),
+            ("[nan]", "[[1.0]]", "[[1.0]]", "center holds NaN"),
+            ("[0.0]", "[[inf]]", "[[1.0]]", "sin holds NaN"),
+        ] {
+            let (_, found) = reference(center, sin, cos).unwrap_err();
+            assert!(found.contains(message), "{found}");
+        }
+    }
+
+    #[test]
+    fn reference_of_an_unknown_kind_names_the_known_one() {
+        let text = "kind = 'csv'\nf0_hz = 1\ncenter = []\nsin = []\ncos = []";
+        let (span, message) = toml::from_str::<RawReference>(text)
+            .unwrap()
+            .check()
+            .unwrap_err();
+        assert!(message.contains("expected \"fourier\""), "{message}");
+        assert_eq!(&text[span], "'csv'");
+    }
+
+    #[test]
+    fn controller_with_only_gains_has_the_plain_defaults() {
+        let found = controller("law = 'pd'\nkp = [1]\nkd = [0]").unwrap();
+        assert_eq!(found.feedforward, Feedforward::None);
+        assert_eq!((found.velocity_filter_hz, found.torque_limit), (None, None));
+    }
+
+    #[test]
+    fn controller_with_a_wrong_list_is_refused() {
+        for (text, message) in [
+            (
+                "law = 'pd'\nkp = [1]\nkd = [0, 1]",
+                "kd has 2 entries, expected 1",
+            ),
+            (
+                "law = 'pd'\nkp = [-1]\nkd = [0]",
+                "kp holds a negative value",
+            ),
+            ("law = 'lqr'\nkp = [1]\nkd = [0]", "unknown variant `lqr`"),
+            (
+                "law = 'pd'\nkp = [1]\nkd = [0]\nki = [1]",
+                "unknown field `ki`",
+            ),
+            (
+                "law = 'pd'\nkp = [1]\nkd = [0]\nvelocity_filter_hz = -1",
+                "greater than zero",
+            ),
+        ] {
+            let found = controller(text).unwrap_err();
+            assert!(found.contains(message), "{found}");
+        }
+    }
+}

@@ -1,0 +1,218 @@
+//! From a log and its companion to a checked [`Recording`].
+
+use std::path::PathBuf;
+
+use super::checks::Motion;
+use super::closed_loop::Reference;
+use super::columns::{self, Channel, Group, Layout, Lookup};
+use super::companion::Companion;
+use super::drives;
+use super::error::{Found, LogError, Problem};
+use super::grid::Grid;
+use super::recording::Recording;
+use super::source;
+use super::spec::LogSpec;
+use super::table::{self, Table};
+use crate::model::Joint;
+use crate::settings::Drives;
+
+/// What the reader must find, and where it looks.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ReadOptions {
+    /// A log without torque, without drive gains for its currents, or with holes in the torque is
+    /// an error; otherwise it is read without torque.
+    pub require_torque: bool,
+    /// The log companion, if it is not the one beside the log.
+    pub companion: Option<PathBuf>,
+}
+
+impl Default for ReadOptions {
+    /// With torque, and the companion beside the log if there is one.
+    fn default() -> Self {
+        ReadOptions {
+            require_torque: true,
+            companion: None,
+        }
+    }
+}
+
+/// Reads a log, or a part of it: columns and units resolved, torque at the joints, checked, on a
+/// uniform time grid. Everything odd that does not stop the reading is in the recording's warnings.
+///
+/// Uniform stamps leave the samples untouched; others are interpolated linearly onto
+/// `t[0] + k / rate` after the part is cut out. A `q1_ref..` in the log becomes the companion's
+/// reference if that has none.
+///
+/// # Errors
+/// [`LogError::Log`] with the [`Problem`] in the file, [`LogError::Companion`],
+/// [`LogError::CompanionFile`], [`LogError::CompanionRobot`] for those of its companion.
+pub fn read(
+    spec: &LogSpec,
+    joints: &[Joint],
+    drives: &Drives,
+    options: &ReadOptions,
+) -> Result<(Recording, Companion), LogError> {
+    let file = spec.path.display().to_string();
+    let in_log = |problem| LogError::Log {
+        file: file.clone(),
+        problem,
+    };
+    columns::check_drives(drives, joints.len()).map_err(in_log)?;
+    let source = source::open(&spec.path).map_err(in_log)?;
+    let mut companion = companion(spec, options)?;
+    companion.check_joints(joints.len())?;
+    let mut warnings = Vec::new();
+    let lookup = Lookup {
+        file: &file,
+        header: &source.header,
+        companion: &companion,
+        joints,
+        drives,
+        require_torque: options.require_torque,
+    };
+    let layout = lookup.layout(&mut warnings)?;
+    let table = table::read(source, &layout, spec.part, &mut warnings).map_err(in_log)?;
+    check_finite(&table, &layout.channels, 0..1).map_err(in_log)?;
+    let grid = Grid::of(&table, companion.rate_hz, &mut warnings).map_err(in_log)?;
+    let rows = Rows::of(table, &layout, drives, options, &mut warnings).map_err(in_log)?;
+    rows.motion()
+        .check(joints, companion.encoder_resolution, &mut warnings);
+    let on_grid = |series: Vec<Vec<f64>>| -> Vec<Vec<f64>> {
+        series
+            .into_iter()
+            .map(|series| grid.apply(series))
+            .collect()
+    };
+    if let (None, Some(q_ref)) = (&companion.reference, rows.q_ref) {
+        companion.reference = Some(Reference::Sampled { q: on_grid(q_ref) });
+    }
+    let recording = Recording {
+        name: spec.name.clone(),
+        stem: spec.stem(),
+        rate_hz: grid.rate_hz,
+        start: grid.start,
+        len: grid.len,
+        q: on_grid(rows.q),
+        qd: rows.qd.map(on_grid),
+        tau: rows.tau.map(on_grid),
+        stamps: rows.table.columns.into_iter().next().unwrap_or_default(),
+        warnings,
+    };
+    Ok((recording, companion))
+}
+
+fn companion(spec: &LogSpec, options: &ReadOptions) -> Result<Companion, LogError> {
+    if let Some(path) = &options.companion {
+        return Companion::load(path);
+    }
+    let beside = spec.companion_path();
+    if beside.is_file() && beside != spec.path {
+        return Companion::load(&beside);
+    }
+    Ok(Companion::default())
+}
+
+/// The rows of the part, one series per joint.
+struct Rows {
+    /// Only the stamps are left in it.
+    table: Table,
+    q: Vec<Vec<f64>>,
+    qd: Option<Vec<Vec<f64>>>,
+    tau: Option<Vec<Vec<f64>>>,
+    q_ref: Option<Vec<Vec<f64>>>,
+}
+
+impl Rows {
+    fn of(
+        mut table: Table,
+        layout: &Layout,
+        drives: &Drives,
+        options: &ReadOptions,
+        warnings: &mut Vec<String>,
+    ) -> Found<Rows> {
+        check_finite(&table, &layout.channels, layout.q.channels.clone())?;
+        if let (Some(tau), true) = (&layout.tau, options.require_torque) {
+            check_finite(&table, &layout.channels, tau.channels.clone())?;
+        }
+        let mut optional = |group: &Option<Group>, warnings: &mut Vec<String>| {
+            let group = group.as_ref()?;
+            match check_finite(&table, &layout.channels, group.channels.clone()) {
+                Ok(()) => Some(take(&mut table, group)),
+                Err(problem) => {
+                    warnings.push(format!("These columns are not used: {problem}."));
+                    None
+                }
+            }
+        };
+        let qd = optional(&layout.qd, warnings);
+        let reported = optional(&layout.tau, warnings);
+        let q_ref = optional(&layout.q_ref, warnings);
+        let mut q = take(&mut table, &layout.q);
+        if layout.q.motor {
+            q = drives::joint_positions(drives, q)?;
+        }
+        let motor = layout.tau.as_ref().is_some_and(|tau| tau.motor);
+        let tau = reported.map(|series| {
+            if motor {
+                drives::joint_torques(drives, series)
+            } else {
+                series
+            }
+        });
+        Ok(Rows {
+            table,
+            q,
+            qd,
+            tau,
+            q_ref,
+        })
+    }
+
+    fn motion(&self) -> Motion<'_> {
+        Motion {
+            table: &self.table,
+            q: &self.q,
+            qd: self.qd.as_deref(),
+            tau: self.tau.as_deref(),
+        }
+    }
+}
+
+/// Moves a group's columns out of the table.
+fn take(table: &mut Table, group: &Group) -> Vec<Vec<f64>> {
+    let columns = table
+        .columns
+        .get_mut(group.channels.clone())
+        .unwrap_or_default();
+    columns.iter_mut().map(std::mem::take).collect()
+}
+
+/// Whether all values of these channels are finite.
+fn check_finite(table: &Table, channels: &[Channel], group: std::ops::Range<usize>) -> Found<()> {
+    const LISTED: usize = 3;
+    for place in group {
+        let (Some(values), Some(channel)) = (table.columns.get(place), channels.get(place)) else {
+            continue;
+        };
+        let bad = || {
+            values
+                .iter()
+                .enumerate()
+                .filter(|(_, value)| !value.is_finite())
+        };
+        let count = bad().count();
+        if count > 0 {
+            let rows = bad()
+                .take(LISTED)
+                .map(|(k, _)| (table.first_row + k).to_string());
+            let more = if count > LISTED { ", ..." } else { "" };
+            let rows = format!("{}{more}", rows.collect::<Vec<_>>().join(", "));
+            return Err(Problem::NotFinite {
+                column: channel.name.clone(),
+                count,
+                rows,
+            });
+        }
+    }
+    Ok(())
+}
