@@ -34,7 +34,7 @@ pub fn snap(angle: f64) -> (f64, Option<i32>) {
 pub fn quarter_turns(turns: i32) -> String {
     let sign = if turns < 0 { "-" } else { "" };
     let size = turns.unsigned_abs();
-    let (count, half) = if size % 2 == 0 {
+    let (count, half) = if size.is_multiple_of(2) {
         (size / 2, "")
     } else {
         (size, "/2")

@@ -25,7 +25,7 @@ pub(crate) struct Named {
 }
 
 /// Reports names that occur twice; `what` is `link` or `joint`.
-pub(crate) fn unique(what: &str, names: &[Named], to: &mut Findings) {
+pub(crate) fn unique(what: &str, names: &[&Named], to: &mut Findings) {
     let mut first: HashMap<&str, Span> = HashMap::new();
     for Named { name, span } in names {
         if let Some(before) = first.get(name.as_str()) {
@@ -39,7 +39,7 @@ pub(crate) fn unique(what: &str, names: &[Named], to: &mut Findings) {
 }
 
 /// Reports different joint names that become one identifier in generated code.
-pub(crate) fn identifiers(names: &[Named], to: &mut Findings) {
+pub(crate) fn identifiers(names: &[&Named], to: &mut Findings) {
     let mut first: HashMap<String, &Named> = HashMap::new();
     for named in names {
         let snake = identifier::snake_case(&named.name);

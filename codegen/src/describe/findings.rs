@@ -1,6 +1,7 @@
 //! Diagnostics of one text, collected while reading goes on.
 
 use super::diagnostic::{Diagnostic, Severity, Span};
+use super::suggest;
 
 /// Positions are looked up from checkpoints this many bytes apart, so that a file of one single
 /// line costs no more than any other.
@@ -151,6 +152,25 @@ impl<'t> Findings<'t> {
             .iter()
             .filter(|one| one.severity == Severity::Error)
             .count()
+    }
+
+    /// How many errors there are whose code starts with `group`.
+    pub(crate) fn errors_of_group(&self, group: &str) -> usize {
+        let within = |one: &&Diagnostic| one.code.starts_with(group);
+        self.list
+            .iter()
+            .filter(|one| one.severity == Severity::Error)
+            .filter(within)
+            .count()
+    }
+
+    /// Help for a misspelt name. None once there are more errors than are shown: comparing every
+    /// wrong name with every right one would take for ever.
+    pub(crate) fn suggest<'c>(&self, word: &str, names: impl Iterator<Item = &'c str>) -> String {
+        if self.list.len() >= MAX_SHOWN {
+            return String::new();
+        }
+        suggest::help(word, &names.collect::<Vec<_>>())
     }
 
     /// The warnings if there is no error, otherwise the errors, in the order of the text.

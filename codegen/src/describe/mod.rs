@@ -14,6 +14,7 @@ pub mod identifier;
 mod source;
 mod suggest;
 mod toml;
+mod tree;
 mod urdf;
 
 pub use description::*;
@@ -44,6 +45,23 @@ pub fn read_path(path: &Path) -> Result<Description, Vec<Diagnostic>> {
         })
     };
     read_text(&text, &file, kind, &load)
+}
+
+/// The kind of a description by its file name, or by its text where the name does not tell.
+///
+/// # Errors
+/// One diagnostic for a format that is not a robot description.
+pub fn kind_of(path: &Path, text: &str) -> Result<Kind, Vec<Diagnostic>> {
+    let file = path.display().to_string();
+    Kind::of(path, text).map_err(|found| vec![found.on_file(&file)])
+}
+
+/// The text of a description file: UTF-8, of a sane size.
+///
+/// # Errors
+/// One diagnostic for a file that cannot be read, is too large or is no text.
+pub fn text_of(path: &Path) -> Result<String, Vec<Diagnostic>> {
+    source::text_of(path, &path.display().to_string())
 }
 
 /// Reads a robot from a text that the user knows as `file`; `load` gives the text of the URDF that

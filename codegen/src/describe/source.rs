@@ -54,6 +54,12 @@ pub(super) fn stem(file: &str) -> String {
         .into_owned()
 }
 
+/// How messages call a file that `file` names by a path relative to itself.
+pub(super) fn beside(file: &str, path: &str) -> String {
+    let folder = Path::new(file).parent().unwrap_or_else(|| Path::new(""));
+    folder.join(path).display().to_string()
+}
+
 /// The text of a file that the user knows as `file`.
 pub(super) fn text_of(path: &Path, file: &str) -> Result<String, Vec<Diagnostic>> {
     let bytes = bytes_of(path).map_err(|found| vec![found.on_file(file)])?;

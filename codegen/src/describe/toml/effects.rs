@@ -8,6 +8,7 @@ use super::super::suggest;
 use super::table::{Table, Value};
 use super::value;
 use crate::catalogue::EffectKind;
+use std::collections::HashMap;
 use toml::de::DeValue;
 
 /// An effect that is asked for, before it is said on which joint.
@@ -196,13 +197,9 @@ fn moving<'j>(
         )
         .help("effects act on moving joints"),
         None => {
-            let known: Vec<&str> = joints
-                .iter()
-                .filter(|(_, motion)| *motion != Motion::Fixed)
-                .map(|(name, _)| name.as_str())
-                .collect();
-            finding(code::EFFECT_JOINT, format!("there is no joint `{wanted}`"))
-                .help(suggest::help(wanted, &known))
+            let moving = joints.iter().filter(|(_, motion)| *motion != Motion::Fixed);
+            let help = to.suggest(wanted, moving.map(|(name, _)| name.as_str()));
+            finding(code::EFFECT_JOINT, format!("there is no joint `{wanted}`")).help(help)
         }
     };
     to.error(value.span().start, mistake);
@@ -211,16 +208,18 @@ fn moving<'j>(
 
 /// Reports an effect that is asked for twice on the same joints: its columns would be equal.
 pub(super) fn check_distinct(effects: &[EffectSpec], to: &mut Findings) {
-    for (index, effect) in effects.iter().enumerate() {
-        let same = |other: &&EffectSpec| other.kind == effect.kind && other.joints == effect.joints;
-        if let Some(first) = effects[..index].iter().find(same) {
-            let on = effect.joints.join(", ");
-            let message = format!("`{}` acts on {on} already", effect.kind.name());
-            let help = format!("it is asked for on line {}; remove one", first.span.line);
-            to.error_at(
-                effect.span,
-                finding(code::EFFECT_REPEATED, message).help(help),
-            );
+    let mut first: HashMap<(EffectKind, &[String]), Span> = HashMap::new();
+    for EffectSpec {
+        kind, joints, span, ..
+    } in effects
+    {
+        if let Some(before) = first.insert((*kind, joints), *span) {
+            let message = format!("`{}` acts on {} already", kind.name(), joints.join(", "));
+            let help = match before.line {
+                0 => "it is there by default".to_owned(),
+                line => format!("it is asked for on line {line}; remove one"),
+            };
+            to.error_at(*span, finding(code::EFFECT_REPEATED, message).help(help));
         }
     }
 }

@@ -4,7 +4,6 @@ use super::super::code;
 use super::super::description::{Geometry, Limits, Motion, Snap, UrdfTree};
 use super::super::diagnostic::Diagnostic;
 use super::super::findings::{Findings, finding};
-use super::super::suggest;
 use super::super::urdf;
 use super::joint::{self, Extras};
 use super::rows;
@@ -106,13 +105,8 @@ fn companion(
         return;
     };
     let Some(index) = tree.joints.iter().position(|joint| joint.name == name) else {
-        let known: Vec<&str> = tree
-            .joints
-            .iter()
-            .map(|joint| joint.name.as_str())
-            .collect();
         let message = format!("the URDF has no joint `{name}`");
-        let help = suggest::help(name, &known);
+        let help = to.suggest(name, tree.joints.iter().map(|joint| joint.name.as_str()));
         to.error(offset, finding(code::EFFECT_JOINT, message).help(help));
         return;
     };

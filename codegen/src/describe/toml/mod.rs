@@ -20,7 +20,7 @@ use super::check;
 use super::code;
 use super::description::Description;
 use super::diagnostic::Diagnostic;
-use super::findings::{Findings, finding};
+use super::findings::{Finding, Findings, finding};
 use super::identifier;
 use super::source;
 use ::toml::de::DeTable;
@@ -31,11 +31,17 @@ use table::Table;
 /// Syntax errors shown at once: later ones are mostly consequences.
 const MAX_SYNTAX_ERRORS: usize = 3;
 
+/// Largest TOML that is read, bytes.
+const MAX_BYTES: usize = 4 << 20;
+
 type Load<'l> = &'l dyn Fn(&str) -> Result<String, String>;
 
 /// Reads a TOML text; `load` gives the text of the URDF that it names.
 pub(super) fn read(text: &str, file: &str, load: Load) -> Result<Description, Vec<Diagnostic>> {
     let mut findings = Findings::new(text, file);
+    if let Some(found) = not_toml(text) {
+        return Err(vec![found.on_file(file)]);
+    }
     let (document, mistakes) = DeTable::parse_recoverable(text);
     for mistake in mistakes.iter().take(MAX_SYNTAX_ERRORS) {
         let offset = mistake.span().map_or(0, |span| span.start);
@@ -56,7 +62,16 @@ pub(super) fn read(text: &str, file: &str, load: Load) -> Result<Description, Ve
         return describe(table, None, text, file, findings);
     };
     match load(path) {
-        Ok(urdf) => describe(table, Some((&urdf, path)), text, file, findings),
+        Ok(urdf) => {
+            let beside = source::beside(file, path);
+            describe(
+                table,
+                Some((source::without_mark(&urdf), &beside)),
+                text,
+                file,
+                findings,
+            )
+        }
         Err(why) => {
             let message = format!("cannot read `{path}`: {why}");
             let help = "a path is relative to the file that names it";
@@ -64,6 +79,16 @@ pub(super) fn read(text: &str, file: &str, load: Load) -> Result<Description, Ve
             Err(findings.decide().err().unwrap_or_default())
         }
     }
+}
+
+/// Why a text is not worth parsing.
+fn not_toml(text: &str) -> Option<Finding> {
+    if text.len() > MAX_BYTES {
+        let message = format!("larger than {} MiB", MAX_BYTES >> 20);
+        return Some(finding(code::FILE_TOO_LARGE, message).help("a robot takes a few lines"));
+    }
+    let xml = text.trim_start().starts_with('<');
+    xml.then(|| finding(code::FILE_CONTENT, "this is XML, not TOML").help("name it .urdf"))
 }
 
 /// Reads a URDF without a companion.

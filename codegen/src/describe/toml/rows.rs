@@ -51,6 +51,7 @@ pub(super) fn read(values: &[Value<'_>], lengths: &[(String, f64)], to: &mut Fin
         all.rows.push(row);
         all.extras.push(extras);
     }
+    let names: Vec<&Named> = names.iter().collect();
     check::unique("joint", &names, to);
     check::identifiers(&names, to);
     all

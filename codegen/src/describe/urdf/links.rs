@@ -1,0 +1,98 @@
+//! `<link>`: structure and text of the numbers. Values come from urdf-rs afterwards.
+
+use super::super::check::Named;
+use super::super::code;
+use super::super::findings::{Findings, finding};
+use super::digest::Digest;
+use super::element::{Attribute, Element};
+use super::number;
+use super::origin;
+
+const COMPONENTS: [&str; 6] = ["ixx", "ixy", "ixz", "iyy", "iyz", "izz"];
+
+/// What is known of a link beside its values.
+pub(super) struct LinkText {
+    /// Name and place.
+    pub(super) named: Named,
+    /// Where `<mass>` and `<inertia>` stand, if the link has an `<inertial>`.
+    pub(super) inertial: Option<(usize, usize)>,
+}
+
+/// Reads a link into the digest.
+pub(super) fn read(link: Element<'_>, digest: &mut Digest, to: &mut Findings) -> LinkText {
+    let name = link.name(to).unwrap_or_default();
+    let owner = format!("link `{name}`");
+    misplaced(link, &owner, to);
+    link.check_children(&["inertial", "visual", "collision"], &owner, to);
+    digest.open("link", &[("name", name)]);
+    let inertial = link.child("inertial", &owner, to);
+    let places = inertial.map(|inertial| read_inertial(inertial, &owner, digest, to));
+    digest.close("link");
+    LinkText {
+        named: Named {
+            name: name.to_owned(),
+            span: to.span(link.offset()),
+        },
+        inertial: places,
+    }
+}
+
+/// Reports what stands in a link and is overlooked there.
+fn misplaced(link: Element<'_>, owner: &str, to: &mut Findings) {
+    for child in link.children() {
+        let help = match child.tag() {
+            "mass" | "inertia" => "it belongs into <inertial>",
+            "joint" | "link" => "links and joints stand directly in <robot>",
+            _ => continue,
+        };
+        let message = format!("<{}> directly in {owner}", child.tag());
+        to.error(
+            child.offset(),
+            finding(code::ELEMENT_MISPLACED, message).help(help),
+        );
+    }
+}
+
+/// Reads an `<inertial>`; gives the places of mass and inertia.
+fn read_inertial(
+    inertial: Element<'_>,
+    owner: &str,
+    digest: &mut Digest,
+    to: &mut Findings,
+) -> (usize, usize) {
+    let owner = &format!("<inertial> of {owner}");
+    inertial.check_children(&["origin", "mass", "inertia"], owner, to);
+    digest.open("inertial", &[]);
+    origin::read(inertial, owner, digest, to);
+    let mass = inertial.need_child("mass", owner, to);
+    let value = mass.and_then(|mass| mass.need("value", owner, to));
+    let text = value.and_then(|value| number::checked(value, &format!("mass in {owner}"), 1, to));
+    digest.empty("mass", &[("value", text.unwrap_or("1"))]);
+    let inertia = inertial.need_child("inertia", owner, to);
+    let components = inertia.map(|inertia| read_inertia(inertia, owner, to));
+    digest.empty(
+        "inertia",
+        &components.unwrap_or_else(|| COMPONENTS.map(|name| (name, "0"))),
+    );
+    digest.close("inertial");
+    let place = |element: Option<Element<'_>>| element.unwrap_or(inertial).offset();
+    (place(mass), place(inertia))
+}
+
+fn read_inertia<'a>(
+    inertia: Element<'a>,
+    owner: &str,
+    to: &mut Findings,
+) -> [(&'static str, &'a str); 6] {
+    inertia.check_attributes(&COMPONENTS, owner, to);
+    COMPONENTS.map(|name| {
+        let found: Option<Attribute<'a>> = inertia.need(name, owner, to);
+        let what = format!("{name} in {owner}");
+        (
+            name,
+            found
+                .and_then(|found| number::checked(found, &what, 1, to))
+                .unwrap_or("0"),
+        )
+    })
+}

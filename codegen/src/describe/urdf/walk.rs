@@ -1,0 +1,155 @@
+//! The walk over links and joints: first their text, then their values.
+
+use super::super::check::{self, Named};
+use super::super::code;
+use super::super::description::{Motion, Snap, UrdfJoint, UrdfLink, UrdfTree};
+use super::super::findings::{Findings, finding};
+use super::super::tree::{Edge, Order};
+use super::digest::Digest;
+use super::element::Element;
+use super::joints::{self, JointText};
+use super::links::{self, LinkText};
+use super::values;
+
+/// Most links, and most joints, of a robot.
+const MAX_LINKS: usize = 10_000;
+
+/// Links and joints as far as they are known without values.
+pub(super) struct Texts {
+    links: Vec<LinkText>,
+    joints: Vec<JointText>,
+    /// What urdf-rs is given to read.
+    pub(super) digest: String,
+}
+
+impl Texts {
+    /// Reads all links and joints, and goes on after a bad one.
+    pub(super) fn read(root: Element<'_>, to: &mut Findings) -> Option<Texts> {
+        for tag in ["link", "joint"] {
+            let mut excess = root
+                .children()
+                .filter(|child| child.tag() == tag)
+                .skip(MAX_LINKS);
+            if let Some(child) = excess.next() {
+                let message = format!("more than {MAX_LINKS} <{tag}> elements");
+                let help = "a robot is read here, not a scene";
+                to.error(child.offset(), finding(code::XML_COUNT, message).help(help));
+                return None;
+            }
+        }
+        root.check_children(&["link", "joint", "gazebo", "material"], "<robot>", to);
+        let mut digest = Digest::new();
+        let (mut links, mut joints, mut meshes) = (Vec::new(), Vec::new(), (0, 0));
+        for child in root.children() {
+            match child.tag() {
+                "link" => {
+                    links.push(links::read(child, &mut digest, to));
+                    let (count, first) = child.count_below("mesh");
+                    meshes = (
+                        meshes.0 + count,
+                        if meshes.0 == 0 { first } else { meshes.1 },
+                    );
+                }
+                "joint" => joints.push(joints::read(child, &mut digest, to)),
+                _ => {}
+            }
+        }
+        if meshes.0 > 0 {
+            let message = format!("{} mesh files are not read", meshes.0);
+            let help = "the model needs masses and inertias, not shapes";
+            to.warn(meshes.1, finding(code::MESHES_IGNORED, message).help(help));
+        }
+        Some(Texts {
+            links,
+            joints,
+            digest: digest.finish(),
+        })
+    }
+
+    /// Names of the links.
+    pub(super) fn links(&self) -> Vec<&Named> {
+        self.links.iter().map(|link| &link.named).collect()
+    }
+
+    /// Joints between links.
+    pub(super) fn edges(&self) -> Vec<&Edge> {
+        self.joints.iter().map(|joint| &joint.edge).collect()
+    }
+
+    /// The tree, if its order is known and there is a value for every text.
+    pub(super) fn with_values(
+        self,
+        robot: &urdf_rs::Robot,
+        order: Option<Order>,
+        to: &mut Findings,
+    ) -> Option<(UrdfTree, Vec<Snap>)> {
+        if robot.links.len() != self.links.len() || robot.joints.len() != self.joints.len() {
+            return None;
+        }
+        let links = self
+            .links
+            .iter()
+            .zip(&robot.links)
+            .map(|(text, link)| UrdfLink {
+                name: text.named.name.clone(),
+                inertial: values::inertial(link, text, to),
+                span: text.named.span,
+            });
+        let links = links.collect();
+        let mut snaps = Vec::new();
+        let mut joints: Vec<UrdfJoint> = Vec::new();
+        for (text, joint) in self.joints.iter().zip(&robot.joints) {
+            joints.push(UrdfJoint {
+                name: text.edge.named.name.clone(),
+                motion: text.motion,
+                parent: 0,
+                child: 0,
+                origin: values::origin(joint, text, &mut snaps, to),
+                axis: values::axis(joint, text, &mut snaps, to),
+                limits: values::limits(joint, text, to),
+                span: text.edge.named.span,
+            });
+        }
+        let moving = self
+            .joints
+            .iter()
+            .filter(|text| text.motion != Motion::Fixed);
+        let moving: Vec<&Named> = moving.map(|text| &text.edge.named).collect();
+        check::identifiers(&moving, to);
+        let joints = ordered(&joints, &order?.joints, to);
+        Some((UrdfTree { links, joints }, snaps))
+    }
+}
+
+/// The joints with their links, parents first.
+fn ordered(
+    joints: &[UrdfJoint],
+    order: &[(usize, usize, usize)],
+    to: &mut Findings,
+) -> Vec<UrdfJoint> {
+    let ordered: Vec<UrdfJoint> = order
+        .iter()
+        .map(|&(index, parent, child)| UrdfJoint {
+            parent,
+            child,
+            ..joints[index].clone()
+        })
+        .collect();
+    let moving: Vec<usize> = order
+        .iter()
+        .map(|&(index, ..)| index)
+        .filter(|&index| joints[index].motion != Motion::Fixed)
+        .collect();
+    if let Some(early) = moving.windows(2).find(|pair| pair[0] > pair[1]) {
+        let (first, second) = (&joints[early[0]].name, &joints[early[1]].name);
+        let message = format!(
+            "joint `{second}` stands before `{first}`, but hangs on it or on what comes after it"
+        );
+        let help = "joints are numbered from the base outwards, not as they stand in the file";
+        to.warn_at(
+            joints[early[1]].span,
+            finding(code::JOINTS_REORDERED, message).help(help),
+        );
+    }
+    ordered
+}
