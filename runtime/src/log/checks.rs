@@ -125,15 +125,20 @@ fn runs(values: &[f64]) -> Vec<Run> {
     runs
 }
 
-/// How many times larger the steps of q are than the integral of qd, by least squares.
+/// How many times larger the steps of q are than the integral of qd, by least squares; `None`
+/// where noise hides how the two belong together.
 fn speed_ratio(stamps: &[f64], q: &[f64], qd: &[f64]) -> Option<f64> {
-    let (mut cross, mut square) = (0.0, 0.0);
+    const ALIKE: f64 = 0.9;
+    let (mut cross, mut of_qd, mut of_q) = (0.0, 0.0, 0.0);
     for ((t, q), qd) in stamps.windows(2).zip(q.windows(2)).zip(qd.windows(2)) {
         let expected = 0.5 * (qd[0] + qd[1]) * (t[1] - t[0]);
-        cross += expected * (q[1] - q[0]);
-        square += expected * expected;
+        let step = q[1] - q[0];
+        cross += expected * step;
+        of_qd += expected * expected;
+        of_q += step * step;
     }
-    (square > 0.0).then_some(cross / square)
+    let alike = cross * cross >= ALIKE * ALIKE * of_qd * of_q;
+    (alike && of_qd > 0.0).then_some(cross / of_qd)
 }
 
 fn speed_finding(name: &str, ratio: f64) -> Option<String> {

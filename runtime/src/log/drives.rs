@@ -15,8 +15,10 @@ pub(super) fn joint_positions(drives: &Drives, motor: Vec<Vec<f64>>) -> Found<Ve
     let c = Mat::from_fn(n, n, |i, j| entry(drives, n, i, j));
     let inverse = c.partial_piv_lu().inverse();
     // A singular matrix gives an inverse that is none, or is not finite.
-    let error = (&c * &inverse - Mat::<f64>::identity(n, n)).norm_max();
-    if error.is_nan() || error > 1e-6 {
+    let product = &c * &inverse;
+    let identity = |i: usize, j: usize| if i == j { 1.0 } else { 0.0 };
+    let exact = |i: usize, j: usize| (product[(i, j)] - identity(i, j)).abs() <= 1e-6;
+    if !(0..n).all(|i| (0..n).all(|j| exact(i, j))) {
         return Err(Problem::SingularCoupling);
     }
     Ok(combine(&motor, |i, j| inverse[(i, j)]))

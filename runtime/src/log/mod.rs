@@ -13,7 +13,9 @@ pub mod companion;
 mod drives;
 pub mod error;
 mod grid;
+mod lookup;
 mod naming;
+mod rate;
 mod read;
 pub mod recording;
 mod resample;
@@ -24,9 +26,7 @@ mod unit;
 mod write;
 
 #[cfg(test)]
-mod dirty;
-#[cfg(test)]
-mod real;
+mod tests;
 
 pub use closed_loop::{Controller, Feedforward, Fourier, Law, Reference, Start};
 pub use companion::{ColumnSource, Companion};

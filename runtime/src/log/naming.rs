@@ -127,7 +127,7 @@ mod tests {
     fn distance_counts_edits_and_overlooks_units_and_capitals() {
         for (column, name, expected) in [
             ("tau1", "tau1", 0),
-            ("Torque1", "tau1", 5),
+            ("Torque1", "tau1", 4),
             ("Q1 [rad]", "q1", 0),
             ("q0", "q1", 1),
         ] {

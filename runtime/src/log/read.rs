@@ -4,11 +4,12 @@ use std::path::PathBuf;
 
 use super::checks::Motion;
 use super::closed_loop::Reference;
-use super::columns::{self, Channel, Group, Layout, Lookup};
+use super::columns::{self, Group, Layout};
 use super::companion::Companion;
 use super::drives;
 use super::error::{Found, LogError, Problem};
 use super::grid::Grid;
+use super::lookup::{Channel, Lookup};
 use super::recording::Recording;
 use super::source;
 use super::spec::LogSpec;

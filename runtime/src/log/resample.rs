@@ -1,6 +1,6 @@
 //! Linear interpolation: from stamps to the uniform grid, and back.
 
-use super::grid;
+use super::rate;
 use super::recording::Recording;
 
 /// The series known at increasing `stamps`, at `start + k / rate_hz` for `k < len`; held before
@@ -37,7 +37,7 @@ pub(super) fn onto_grid(
 /// series of another length is understood to begin with the grid; an empty one gives NaN.
 pub fn onto_stamps(recording: &Recording, series: &[f64]) -> Vec<f64> {
     let stamps = &recording.stamps;
-    if stamps.len() == series.len() && grid::fits(stamps, recording.rate_hz, true) {
+    if stamps.len() == series.len() && rate::fits(stamps, recording.rate_hz, true) {
         return series.to_vec();
     }
     let last = series.len().saturating_sub(1);

@@ -6,6 +6,7 @@ use csv::ByteRecord;
 
 use super::columns::Layout;
 use super::error::{Found, Problem};
+use super::lookup::Channel;
 use super::source::Source;
 use super::spec::{FIRST_ROW, Part};
 
@@ -128,7 +129,7 @@ fn take(
     part: Part,
     separator: u8,
 ) -> Found<()> {
-    let value = |channel: &super::columns::Channel| {
+    let value = |channel: &Channel| {
         let field = record.get(channel.index).unwrap_or_default();
         number(field, separator)
             .map(|value| value * channel.factor)
