@@ -92,24 +92,7 @@ impl Companion {
                 error.message().trim().to_owned(),
             )
         })?;
-        let mut columns = BTreeMap::new();
-        let mut places = BTreeMap::new();
-        for (key, source) in raw.columns {
-            let (span, key) = (key.span(), key.into_inner());
-            let source_span = source.span();
-            let source = source.into_inner();
-            if source
-                .gain
-                .is_some_and(|gain| !gain.is_finite() || gain == 0.0)
-            {
-                return Err((
-                    source_span,
-                    format!("`{key}`: a gain must be finite and not zero"),
-                ));
-            }
-            places.insert(key.clone(), position(text, span.start));
-            columns.insert(key, source);
-        }
+        let (columns, places) = columns(text, raw.columns)?;
         Ok(Companion {
             path: None,
             rate_hz: raw
@@ -163,6 +146,35 @@ impl Companion {
         }
         Ok(())
     }
+}
+
+type Columns = BTreeMap<String, ColumnSource>;
+type Places = BTreeMap<String, (usize, usize)>;
+
+/// The `[columns]` table, and where its keys stand.
+fn columns(
+    text: &str,
+    raw: BTreeMap<Spanned<String>, Spanned<ColumnSource>>,
+) -> Result<(Columns, Places), Mistake> {
+    let mut columns = BTreeMap::new();
+    let mut places = BTreeMap::new();
+    for (key, source) in raw {
+        let (span, key) = (key.span(), key.into_inner());
+        let source_span = source.span();
+        let source = source.into_inner();
+        if source
+            .gain
+            .is_some_and(|gain| !gain.is_finite() || gain == 0.0)
+        {
+            return Err((
+                source_span,
+                format!("`{key}`: a gain must be finite and not zero"),
+            ));
+        }
+        places.insert(key.clone(), position(text, span.start));
+        columns.insert(key, source);
+    }
+    Ok((columns, places))
 }
 
 /// The value, if it is finite and greater than zero.

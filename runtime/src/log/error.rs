@@ -139,7 +139,7 @@ pub enum Problem {
     },
     /// Missing or infinite values where none may be.
     #[error(
-        "column `{column}`: {count} values are missing, NaN or infinite, first in row {rows}; \
+        "column `{column}`: values missing, NaN or infinite: {count} (row {rows}); \
          cut them away with a part of the log, such as LOG@#FROM..TO"
     )]
     NotFinite {

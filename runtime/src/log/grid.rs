@@ -73,18 +73,21 @@ impl Grid {
         })
     }
 
-    /// A column of the table on the grid.
-    pub fn apply(&self, column: Vec<f64>) -> Vec<f64> {
-        let column = match &self.kept {
-            Some(kept) => gather(&column, kept),
-            None => column,
-        };
-        match &self.stamps {
-            Some(stamps) => {
-                resample::onto_grid(stamps, &column, self.start, self.rate_hz, self.len)
+    /// Columns of the table on the grid.
+    pub fn apply(&self, columns: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+        let column = |column: Vec<f64>| {
+            let column = match &self.kept {
+                Some(kept) => gather(&column, kept),
+                None => column,
+            };
+            match &self.stamps {
+                Some(stamps) => {
+                    resample::onto_grid(stamps, &column, self.start, self.rate_hz, self.len)
+                }
+                None => column,
             }
-            None => column,
-        }
+        };
+        columns.into_iter().map(column).collect()
     }
 }
 
@@ -117,8 +120,8 @@ fn without_repeats(table: &Table, warnings: &mut Vec<String>) -> Found<Option<Ve
         .iter()
         .filter(|&&k| table.columns.iter().any(|c| c.get(k) != c.get(k - 1)));
     warnings.push(format!(
-        "{count} rows carry the stamp of the row before ({} of them with other values) and are \
-         left out; the first: {}.",
+        "Rows that carry the stamp of the row before are left out: {count}, of which {} have other \
+         values; the first is {}.",
         differ.count(),
         table.at(first)
     ));
@@ -161,35 +164,30 @@ fn report_irregular(
         .windows(2)
         .map(|pair| (pair[1] - pair[0]) * rate_hz)
         .collect();
-    let irregular = steps
-        .iter()
-        .filter(|&&step| (step - 1.0).abs() > 0.1)
-        .count();
+    let irregular = steps.iter().filter(|step| (*step - 1.0).abs() > 0.1);
     let longest = steps.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1));
     let Some((place, step)) = longest else { return };
     let ms = |steps: f64| shown(steps * 1e3 / rate_hz);
     warnings.push(format!(
-        "The stamps are irregular: {irregular} of {} steps differ from {} ms by more than 10 %, the \
+        "The stamps are irregular: {} of {} steps differ from {} ms by more than 10 %, the \
          longest is {} ms (after {}); samples were interpolated linearly onto {} Hz.",
+        irregular.count(),
         steps.len(),
         ms(1.0),
         ms(*step),
         at(place),
         shown(rate_hz),
     ));
-    let gaps: Vec<usize> = (0..steps.len()).filter(|&k| steps[k] > GAP).collect();
-    if gaps.is_empty() {
-        return;
+    let gaps: Vec<String> = (steps.iter().enumerate())
+        .filter(|(_, step)| **step > GAP)
+        .map(|(k, step)| format!("{} ms after {}", ms(*step), at(k)))
+        .collect();
+    if !gaps.is_empty() {
+        warnings.push(format!(
+            "Gaps longer than {GAP} steps are bridged by straight lines ({}): {}{}.",
+            gaps.len(),
+            gaps[..gaps.len().min(LISTED)].join("; "),
+            if gaps.len() > LISTED { "; ..." } else { "" },
+        ));
     }
-    let list = gaps
-        .iter()
-        .take(LISTED)
-        .map(|&k| format!("{} ms after {}", ms(steps[k]), at(k)));
-    let more = if gaps.len() > LISTED { ", ..." } else { "" };
-    let list: Vec<String> = list.collect();
-    warnings.push(format!(
-        "{} gaps longer than {GAP} steps are bridged by straight lines: {}{more}.",
-        gaps.len(),
-        list.join("; ")
-    ));
 }

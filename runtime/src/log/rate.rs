@@ -70,33 +70,7 @@ pub(super) fn rate(stamps: &[f64], given: Option<f64>, warnings: &mut Vec<String
         }
         return given;
     }
-    let span = stamps
-        .last()
-        .zip(stamps.first())
-        .map_or(0.0, |(last, first)| last - first);
-    let mean = (stamps.len().saturating_sub(1)) as f64 / span;
-    let simple = [
-        round_rate(mean),
-        mean.round(),
-        1e6 / (1e6 / mean).round(),
-        mean,
-    ];
-    let exact = simple
-        .into_iter()
-        .find(|&rate| rate > 0.0 && fits(stamps, rate, false));
-    let found = exact.unwrap_or_else(|| {
-        let near = round_rate(median);
-        let whole = if median >= 10.0 {
-            median.round()
-        } else {
-            median
-        };
-        if (near / median - 1.0).abs() <= NEAR_ROUND {
-            near
-        } else {
-            whole
-        }
-    });
+    let found = estimate(stamps, median);
     if !(2.0..=1e5).contains(&found) {
         warnings.push(format!(
             "The stamps say {} Hz; if they are not seconds, write t = {{ unit = \"ms\" }} (or us, \
@@ -105,6 +79,27 @@ pub(super) fn rate(stamps: &[f64], given: Option<f64>, warnings: &mut Vec<String
         ));
     }
     found
+}
+
+/// A simple rate that explains every stamp, else a round rate near the median step's.
+fn estimate(stamps: &[f64], median: f64) -> f64 {
+    let ends = stamps.last().zip(stamps.first());
+    let span = ends.map_or(0.0, |(last, first)| last - first);
+    let mean = (stamps.len().saturating_sub(1)) as f64 / span;
+    let whole_microseconds = 1e6 / (1e6 / mean).round();
+    for rate in [round_rate(mean), mean.round(), whole_microseconds, mean] {
+        if rate > 0.0 && fits(stamps, rate, false) {
+            return rate;
+        }
+    }
+    let near = round_rate(median);
+    if (near / median - 1.0).abs() <= NEAR_ROUND {
+        near
+    } else if median >= 10.0 {
+        median.round()
+    } else {
+        median
+    }
 }
 
 fn median_step(stamps: &[f64]) -> f64 {

@@ -75,31 +75,15 @@ pub fn read(
     let table = table::read(source, &layout, spec.part, &mut warnings).map_err(in_log)?;
     check_finite(&table, &layout.channels, 0..1).map_err(in_log)?;
     let grid = Grid::of(&table, companion.rate_hz, &mut warnings).map_err(in_log)?;
-    let rows = Rows::of(table, &layout, drives, options, &mut warnings).map_err(in_log)?;
+    let mut rows = Rows::of(table, &layout, drives, options, &mut warnings).map_err(in_log)?;
     rows.motion()
         .check(joints, companion.encoder_resolution, &mut warnings);
-    let on_grid = |series: Vec<Vec<f64>>| -> Vec<Vec<f64>> {
-        series
-            .into_iter()
-            .map(|series| grid.apply(series))
-            .collect()
-    };
-    if let (None, Some(q_ref)) = (&companion.reference, rows.q_ref) {
-        companion.reference = Some(Reference::Sampled { q: on_grid(q_ref) });
+    if let (None, Some(q_ref)) = (&companion.reference, rows.q_ref.take()) {
+        companion.reference = Some(Reference::Sampled {
+            q: grid.apply(q_ref),
+        });
     }
-    let recording = Recording {
-        name: spec.name.clone(),
-        stem: spec.stem(),
-        rate_hz: grid.rate_hz,
-        start: grid.start,
-        len: grid.len,
-        q: on_grid(rows.q),
-        qd: rows.qd.map(on_grid),
-        tau: rows.tau.map(on_grid),
-        stamps: rows.table.columns.into_iter().next().unwrap_or_default(),
-        warnings,
-    };
-    Ok((recording, companion))
+    Ok((rows.recording(spec, &grid, warnings), companion))
 }
 
 fn companion(spec: &LogSpec, options: &ReadOptions) -> Result<Companion, LogError> {
@@ -137,13 +121,10 @@ impl Rows {
         }
         let mut optional = |group: &Option<Group>, warnings: &mut Vec<String>| {
             let group = group.as_ref()?;
-            match check_finite(&table, &layout.channels, group.channels.clone()) {
-                Ok(()) => Some(take(&mut table, group)),
-                Err(problem) => {
-                    warnings.push(format!("These columns are not used: {problem}."));
-                    None
-                }
-            }
+            let finite = check_finite(&table, &layout.channels, group.channels.clone());
+            let unused = |why| warnings.push(format!("These columns are not used: {why}."));
+            finite.map_err(unused).ok()?;
+            Some(take(&mut table, group))
         };
         let qd = optional(&layout.qd, warnings);
         let reported = optional(&layout.tau, warnings);
@@ -153,13 +134,10 @@ impl Rows {
             q = drives::joint_positions(drives, q)?;
         }
         let motor = layout.tau.as_ref().is_some_and(|tau| tau.motor);
-        let tau = reported.map(|series| {
-            if motor {
-                drives::joint_torques(drives, series)
-            } else {
-                series
-            }
-        });
+        let tau = match reported {
+            Some(reported) if motor => Some(drives::joint_torques(drives, reported)),
+            joint_side => joint_side,
+        };
         Ok(Rows {
             table,
             q,
@@ -167,6 +145,21 @@ impl Rows {
             tau,
             q_ref,
         })
+    }
+
+    fn recording(self, spec: &LogSpec, grid: &Grid, warnings: Vec<String>) -> Recording {
+        Recording {
+            name: spec.name.clone(),
+            stem: spec.stem(),
+            rate_hz: grid.rate_hz,
+            start: grid.start,
+            len: grid.len,
+            q: grid.apply(self.q),
+            qd: self.qd.map(|qd| grid.apply(qd)),
+            tau: self.tau.map(|tau| grid.apply(tau)),
+            stamps: self.table.columns.into_iter().next().unwrap_or_default(),
+            warnings,
+        }
     }
 
     fn motion(&self) -> Motion<'_> {

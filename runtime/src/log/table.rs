@@ -45,7 +45,8 @@ struct Place {
 /// What the rows so far say about the rows to come.
 #[derive(Default)]
 struct Progress {
-    row: usize,
+    /// Data rows seen.
+    rows: usize,
     previous: Option<f64>,
     inside: bool,
     /// The last step back in time: where, from and to.
@@ -63,41 +64,32 @@ pub(super) fn read(
     part: Part,
     warnings: &mut Vec<String>,
 ) -> Found<Table> {
-    let mut table = Table {
-        first_row: FIRST_ROW,
-        columns: vec![Vec::new(); layout.channels.len()],
-    };
-    let mut progress = Progress {
-        row: FIRST_ROW - 1,
-        ..Progress::default()
-    };
+    let columns = vec![Vec::new(); layout.channels.len()];
+    let first_row = FIRST_ROW;
+    let mut table = Table { first_row, columns };
+    let mut progress = Progress::default();
     let mut record = ByteRecord::new();
-    while next(&mut source.rows, &mut record, progress.row)? {
+    while next(&mut source.rows, &mut record, progress.rows)? {
         if is_blank(&record) {
             continue;
         }
-        progress.row += 1;
-        if part.ends_before(progress.row) {
+        let row = FIRST_ROW + progress.rows;
+        progress.rows += 1;
+        if part.ends_before(row) {
             break;
         }
-        if matches!(part, Part::Rows { .. }) && !part.contains(progress.row, 0.0) {
+        if matches!(part, Part::Rows { .. }) && !part.contains(row, 0.0) {
             continue;
         }
         let line = record.position().map_or(0, csv::Position::line) + source.header_lines;
-        let place = Place {
-            row: progress.row,
-            line,
-        };
+        let place = Place { row, line };
         if progress.complete(place, &record, source.header.len())? {
-            take(
-                &mut table,
-                &mut progress,
-                &record,
+            let row = Row {
+                record: &record,
                 place,
-                layout,
-                part,
-                source.separator,
-            )?;
+                separator: source.separator,
+            };
+            row.take(&mut table, &mut progress, layout, part)?;
         }
     }
     progress.finish(&table, part, warnings)?;
@@ -107,11 +99,11 @@ pub(super) fn read(
 fn next(
     rows: &mut csv::Reader<Box<dyn BufRead>>,
     record: &mut ByteRecord,
-    row: usize,
+    rows_before: usize,
 ) -> Found<bool> {
     rows.read_byte_record(record)
         .map_err(|error| Problem::Damaged {
-            rows: (row + 1) - FIRST_ROW,
+            rows: rows_before,
             reason: match error.into_kind() {
                 csv::ErrorKind::Io(error) => format!("{error} (is the file truncated?)"),
                 other => format!("{other:?}"),
@@ -119,41 +111,45 @@ fn next(
         })
 }
 
-/// Stamp, order and part of one complete row; its values if it belongs to the part.
-fn take(
-    table: &mut Table,
-    progress: &mut Progress,
-    record: &ByteRecord,
+/// One complete row.
+struct Row<'a> {
+    record: &'a ByteRecord,
     place: Place,
-    layout: &Layout,
-    part: Part,
     separator: u8,
-) -> Found<()> {
-    let value = |channel: &Channel| {
-        let field = record.get(channel.index).unwrap_or_default();
-        number(field, separator)
-            .map(|value| value * channel.factor)
-            .ok_or_else(|| {
-                let text = String::from_utf8_lossy(field).chars().take(40).collect();
-                let Place { row, line } = place;
-                Problem::BadNumber {
-                    row,
-                    line,
-                    column: channel.name.clone(),
-                    text,
-                }
-            })
-    };
-    let Some(time) = layout.channels.first().map(value).transpose()? else {
-        return Ok(());
-    };
-    if !progress.enters(place, time, part, table)? {
-        return Ok(());
+}
+
+impl Row<'_> {
+    /// Stamp, order and part of the row; its values if it belongs to the part.
+    fn take(
+        &self,
+        table: &mut Table,
+        progress: &mut Progress,
+        layout: &Layout,
+        part: Part,
+    ) -> Found<()> {
+        let Some(time) = layout.channels.first() else {
+            return Ok(());
+        };
+        let time = self.value(time)?;
+        if !progress.enters(self.place, time, part, table)? {
+            return Ok(());
+        }
+        for (i, (channel, column)) in layout.channels.iter().zip(&mut table.columns).enumerate() {
+            column.push(if i == 0 { time } else { self.value(channel)? });
+        }
+        Ok(())
     }
-    for (i, (channel, column)) in layout.channels.iter().zip(&mut table.columns).enumerate() {
-        column.push(if i == 0 { time } else { value(channel)? });
+
+    fn value(&self, channel: &Channel) -> Found<f64> {
+        let field = self.record.get(channel.index).unwrap_or_default();
+        let value = number(field, self.separator).ok_or_else(|| Problem::BadNumber {
+            row: self.place.row,
+            line: self.place.line,
+            column: channel.name.clone(),
+            text: String::from_utf8_lossy(field).chars().take(40).collect(),
+        })?;
+        Ok(value * channel.factor)
     }
-    Ok(())
 }
 
 impl Progress {
@@ -230,8 +226,8 @@ impl Progress {
             format!(", t from {low} to {high} s")
         });
         let extent = match part {
-            Part::Whole => format!("the log has {} rows{times}", self.row),
-            _ => format!("of the part {part}, {} rows were read{times}", self.row),
+            Part::Whole => format!("the log has {} rows{times}", self.rows),
+            _ => format!("of the part {part}, {} rows were read{times}", self.rows),
         };
         Err(Problem::TooFewRows {
             rows,

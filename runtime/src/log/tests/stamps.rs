@@ -38,7 +38,10 @@ fn stamp_that_repeats_is_left_out_and_reported() {
     assert_eq!(log.q, good(&clean()).q);
     assert_says(
         &log.warnings.join("\n"),
-        &["1 rows carry the stamp", "0 of them", "row 31"],
+        &[
+            "stamp of the row before are left out: 1, of which 0",
+            "row 31",
+        ],
     );
     // Predictions still have one value per row.
     assert_eq!(onto_stamps(&log, &log.q[0]).len(), 201);
@@ -89,7 +92,7 @@ fn sample_that_was_lost_is_interpolated_and_reported() {
         &[
             "2 of 178 steps",
             "the longest is 210 ms (after row 98, t = 0.98 s)",
-            "1 gaps longer",
+            "Gaps longer than 5 steps are bridged by straight lines (1)",
         ],
     );
 }

@@ -34,7 +34,7 @@ fn values_that_are_not_finite_are_counted_and_located() {
         });
         assert_says(
             &message(&text),
-            &["4 values are missing, NaN or infinite", "5, 6, 100, ..."],
+            &["values missing, NaN or infinite: 4", "5, 6, 100, ..."],
         );
     }
     let text = log(|row, fields| {
@@ -42,7 +42,10 @@ fn values_that_are_not_finite_are_counted_and_located() {
             fields[0] = "nan".into();
         }
     });
-    assert_says(&message(&text), &["column `t`: 1 values", "row 50"]);
+    assert_says(
+        &message(&text),
+        &["column `t`: values missing, NaN or infinite: 1", "row 50"],
+    );
 }
 
 #[test]
