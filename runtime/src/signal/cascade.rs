@@ -14,6 +14,15 @@ pub struct Section {
 }
 
 impl Section {
+    /// Magnitude of the pole nearest to the unit circle.
+    fn pole_magnitude(&self) -> f64 {
+        let [a1, a2] = self.a;
+        match a1 * a1 - 4.0 * a2 {
+            complex if complex < 0.0 => a2.sqrt(),
+            real => (a1.abs() + real.sqrt()) / 2.0,
+        }
+    }
+
     /// Gain at zero frequency.
     fn gain_at_zero(&self) -> f64 {
         self.b.iter().sum::<f64>() / (1.0 + self.a[0] + self.a[1])
@@ -64,6 +73,18 @@ impl Cascade {
             .iter()
             .map(|Section { b, a }| magnitude(b[0], b[1], b[2]) / magnitude(1.0, a[0], a[1]))
             .product()
+    }
+
+    /// Samples after which the impulse response has decayed to rounding.
+    pub(super) fn memory(&self) -> usize {
+        let slowest = self
+            .sections
+            .iter()
+            .map(Section::pole_magnitude)
+            .fold(0.0, f64::max);
+        // Both passes and the overlap of neighbouring poles cost some more than one pole's decay.
+        let decay = (1e-19f64).ln() / slowest.clamp(1e-3, 1.0 - 1e-9).ln();
+        decay.ceil() as usize
     }
 
     /// Filters `samples` in place, first to last, starting from the steady state of the first.

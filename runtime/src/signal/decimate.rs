@@ -54,31 +54,44 @@ impl Decimator {
         CUT_OFF * self.rate_hz / (2.0 * self.ratio as f64)
     }
 
-    /// Which of `samples` samples are kept.
-    pub fn kept(&self, samples: usize) -> impl ExactSizeIterator<Item = usize> + Clone {
+    /// Which samples of a signal of `samples` samples are kept.
+    pub fn kept(&self, samples: usize) -> Vec<usize> {
         let first = match self.edges {
             Edges::Scipy => 0,
             // nbeg = r - (r*ceil(n/r) - n) counts from 1.
             Edges::Matlab => (samples + self.ratio - 1) % self.ratio,
         };
-        (first..samples).step_by(self.ratio)
+        (first..samples).step_by(self.ratio).collect()
     }
 
-    /// The low-passed and decimated signals.
+    /// Samples away from an edge after which the low-pass has forgotten it, to rounding.
+    pub fn memory(&self) -> usize {
+        self.filter.as_ref().map_or(1, ZeroPhase::memory)
+    }
+
+    /// The low-passed signals at the samples `kept`.
     ///
     /// # Errors
     /// [`SignalError::TooShort`].
-    pub fn values<S: Signals + ?Sized>(&self, signals: &S) -> Result<Vec<Vec<f64>>, SignalError> {
-        self.read(signals, |filtered, lane, i| filtered[i][lane])
+    pub fn values<S: Signals + ?Sized>(
+        &self,
+        signals: &S,
+        kept: &[usize],
+    ) -> Result<Vec<Vec<f64>>, SignalError> {
+        self.read(signals, kept, |filtered, lane, i| filtered[i][lane])
     }
 
-    /// The decimated derivatives of the low-passed signals, per second: the difference is taken
-    /// at the full rate, after the low-pass (Gautier 1996, eqs. 19 and 23).
+    /// The derivatives of the low-passed signals at the samples `kept`, per second: the
+    /// difference is taken at the full rate, after the low-pass (Gautier 1996, eqs. 19 and 23).
     ///
     /// # Errors
     /// [`SignalError::TooShort`].
-    pub fn rates<S: Signals + ?Sized>(&self, signals: &S) -> Result<Vec<Vec<f64>>, SignalError> {
-        self.read(signals, |filtered, lane, i| {
+    pub fn rates<S: Signals + ?Sized>(
+        &self,
+        signals: &S,
+        kept: &[usize],
+    ) -> Result<Vec<Vec<f64>>, SignalError> {
+        self.read(signals, kept, |filtered, lane, i| {
             difference_at(|k| filtered[k][lane], i, filtered.len(), self.rate_hz)
         })
     }
@@ -86,11 +99,11 @@ impl Decimator {
     fn read<S: Signals + ?Sized>(
         &self,
         signals: &S,
+        kept: &[usize],
         value: impl Fn(&[[f64; LANES]], usize, usize) -> f64 + Sync,
     ) -> Result<Vec<Vec<f64>>, SignalError> {
-        let kept = self.kept(signals.samples());
         let reader = |group: &[[f64; LANES]], width: usize| {
-            let lane = |lane| kept.clone().map(|i| value(group, lane, i)).collect();
+            let lane = |lane| kept.iter().map(|i| value(group, lane, *i)).collect();
             (0..width).map(lane).collect()
         };
         match &self.filter {
@@ -125,15 +138,15 @@ mod tests {
     #[test]
     fn kept_samples_follow_matlab_or_scipy() {
         let matlab = Decimator::new(10, 100.0, Edges::Matlab).unwrap();
-        assert_eq!(matlab.kept(4200).next(), Some(9));
+        assert_eq!(matlab.kept(4200).first(), Some(&9));
         assert_eq!(matlab.kept(4200).len(), 420);
         // EMPS: 24 792 samples, nbeg = 2.
-        assert_eq!(matlab.kept(24_792).next(), Some(1));
+        assert_eq!(matlab.kept(24_792).first(), Some(&1));
         assert_eq!(matlab.kept(24_792).len(), 2480);
-        assert_eq!(matlab.kept(1).next(), Some(0));
-        assert_eq!(matlab.kept(0).next(), None);
+        assert_eq!(matlab.kept(1), [0]);
+        assert!(matlab.kept(0).is_empty());
         let scipy = Decimator::new(10, 100.0, Edges::Scipy).unwrap();
-        assert_eq!(scipy.kept(4200).next(), Some(0));
+        assert_eq!(scipy.kept(4200).first(), Some(&0));
         assert_eq!(scipy.kept(4201).len(), 421);
     }
 
@@ -141,8 +154,11 @@ mod tests {
     fn a_ratio_of_one_changes_nothing() {
         let series = vec![vec![1.0, -2.0, 3.5]; 11];
         let decimator = Decimator::new(1, 100.0, Edges::Scipy).unwrap();
-        assert_eq!(decimator.values(series.as_slice()).unwrap(), series);
-        let rates = decimator.rates(series.as_slice()).unwrap();
+        assert_eq!(
+            decimator.values(series.as_slice(), &[0, 1, 2]).unwrap(),
+            series
+        );
+        let rates = decimator.rates(series.as_slice(), &[0, 1, 2]).unwrap();
         assert_eq!(rates[10], central_difference(&series[10], 100.0));
     }
 
@@ -155,13 +171,13 @@ mod tests {
         };
         let decimator = Decimator::new(10, 1000.0, Edges::Scipy).unwrap();
         assert_eq!(decimator.cutoff_hz(), 40.0);
-        let kept = decimator
-            .values([wave(5.0), wave(80.0)].as_slice())
-            .unwrap();
+        let kept = decimator.kept(3000);
+        let waves = [wave(5.0), wave(80.0)];
+        let rows = decimator.values(waves.as_slice(), &kept).unwrap();
         let middle = 50..250;
-        for (row, i) in middle.clone().zip(decimator.kept(3000).skip(middle.start)) {
-            assert!((kept[0][row] - wave(5.0)[i]).abs() < 0.012);
-            assert!(kept[1][row].abs() < 1e-4);
+        for (row, i) in middle.clone().zip(kept.into_iter().skip(middle.start)) {
+            assert!((rows[0][row] - wave(5.0)[i]).abs() < 0.012);
+            assert!(rows[1][row].abs() < 1e-4);
         }
     }
 
@@ -169,10 +185,10 @@ mod tests {
     fn differentiation_and_low_pass_commute_away_from_the_edges() {
         let wave: Vec<f64> = (0..6000).map(|i| (0.02 * f64::from(i)).sin()).collect();
         let decimator = Decimator::new(8, 100.0, Edges::Matlab).unwrap();
-        let rates = decimator.rates(std::slice::from_ref(&wave)).unwrap();
-        let values = decimator
-            .values([central_difference(&wave, 100.0)].as_slice())
-            .unwrap();
+        let kept = decimator.kept(wave.len());
+        let rates = decimator.rates(std::slice::from_ref(&wave), &kept).unwrap();
+        let slope = [central_difference(&wave, 100.0)];
+        let values = decimator.values(slope.as_slice(), &kept).unwrap();
         for row in 250..500 {
             assert!((rates[0][row] - values[0][row]).abs() < 1e-9);
         }

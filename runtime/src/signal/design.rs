@@ -50,7 +50,7 @@ pub fn chebyshev1(
         .collect();
     // The prototype's gain is 1 at zero frequency for odd orders and the ripple's floor for even.
     let at_zero = poles.iter().map(|p| p.negated_product()).product::<f64>();
-    let gain = if order % 2 == 0 {
+    let gain = if order.is_multiple_of(2) {
         at_zero / (1.0 + ripple * ripple).sqrt()
     } else {
         at_zero
@@ -79,7 +79,7 @@ fn warp(order: usize, cutoff_hz: f64, rate_hz: f64) -> Result<f64, SignalError> 
 /// Angles, from the negative real axis, of the prototype's poles in the upper half plane; the
 /// real pole of an odd order comes first.
 fn half_plane_angles(order: usize) -> impl Iterator<Item = f64> {
-    let first = if order % 2 == 0 { 1 } else { 0 };
+    let first = if order.is_multiple_of(2) { 1 } else { 0 };
     (first..order)
         .step_by(2)
         .map(move |m| PI * m as f64 / (2.0 * order as f64))

@@ -43,6 +43,11 @@ impl ZeroPhase {
         self.extension + 1
     }
 
+    /// Samples away from an edge after which the filter has forgotten it, to rounding.
+    pub fn memory(&self) -> usize {
+        self.cascade.memory()
+    }
+
     /// Filters every signal over its whole length.
     ///
     /// # Errors
@@ -102,11 +107,12 @@ impl ZeroPhase {
 fn extend_oddly(samples: &mut [[f64; LANES]], extension: usize) {
     let first = extension;
     let last = samples.len() - 1 - extension;
+    let reflect = |centre: [f64; LANES], x: [f64; LANES]| {
+        std::array::from_fn(|lane| 2.0 * centre[lane] - x[lane])
+    };
     for k in 1..=extension {
-        for lane in 0..LANES {
-            samples[first - k][lane] = 2.0 * samples[first][lane] - samples[first + k][lane];
-            samples[last + k][lane] = 2.0 * samples[last][lane] - samples[last - k][lane];
-        }
+        samples[first - k] = reflect(samples[first], samples[first + k]);
+        samples[last + k] = reflect(samples[last], samples[last - k]);
     }
 }
 

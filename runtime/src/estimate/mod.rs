@@ -1,0 +1,57 @@
+//! Least squares: from equations to parameters, their standard deviations, and what the data
+//! cannot tell.
+//!
+//! Each block of equations (a joint) is reduced to a small triangular factor ([`Triangle`]);
+//! ordinary and weighted least squares, residuals, condition and rank all follow from these
+//! factors without the rows (Gautier 1996, sections 5 and 7.3).
+
+mod identifiable;
+mod least_squares;
+mod robust;
+mod triangle;
+mod weights;
+
+pub use identifiable::Dependency;
+pub use least_squares::{Estimate, estimate};
+pub use triangle::Triangle;
+
+/// Why parameters cannot be estimated.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum EstimateError {
+    /// Fewer equations than parameters.
+    #[error(
+        "there are {rows} equations for {parameters} parameters; \
+         use a longer log or a smaller decimation ratio"
+    )]
+    TooFewEquations {
+        /// Number of equations.
+        rows: usize,
+        /// Number of parameters that appear in them.
+        parameters: usize,
+    },
+    /// There is no torque to explain.
+    #[error("the measurements of block {block} are missing; identification needs torque")]
+    NoMeasurements {
+        /// Joint, counted from 1.
+        block: usize,
+    },
+    /// A measurement or an entry of W that is not a number.
+    #[error(
+        "{what} of block {block} is not finite at row {row}; \
+         look there for missing values or a model that divides by zero"
+    )]
+    NotFinite {
+        /// `the measurement` or `the regressor`.
+        what: &'static str,
+        /// Joint, counted from 1.
+        block: usize,
+        /// Row of the decimated equations, counted from 0.
+        row: usize,
+    },
+    /// Every column of W is zero.
+    #[error("no parameter appears in the equations: the robot does not move in these logs")]
+    NothingMoves,
+    /// The singular values did not converge.
+    #[error("the singular values of W could not be computed; check the log for extreme values")]
+    Singular,
+}

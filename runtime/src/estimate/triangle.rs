@@ -1,0 +1,145 @@
+//! The triangular factor of a block of equations, all that least squares needs to know of it.
+
+use faer::{Mat, MatRef};
+use rayon::prelude::*;
+
+use super::EstimateError;
+use crate::observe::Equations;
+
+/// Rows that are triangularised at once: few enough to stay in cache.
+const ROWS: usize = 1024;
+
+/// Triangular factor of `[W | Y]` of a block of equations: with it
+/// \\( \|Y - W X\| = \|R_{[W|Y]} (X; -1)\| \\) for every X.
+#[derive(Clone, Debug)]
+pub struct Triangle {
+    /// The parameters that the block can see, ascending.
+    pub columns: Vec<usize>,
+    /// Equations that went into the factor.
+    pub rows: usize,
+    /// Upper trapezoidal factor of `[W | Y]`, at most `columns.len() + 1` rows.
+    r: Mat<f64>,
+}
+
+impl Triangle {
+    /// Reduces the equations of block `block` (from 0, for messages), each row multiplied by its
+    /// factor in `factors` if there are any.
+    ///
+    /// # Errors
+    /// [`EstimateError::NoMeasurements`], [`EstimateError::NotFinite`].
+    pub fn new(
+        equations: &Equations,
+        block: usize,
+        factors: Option<&[f64]>,
+    ) -> Result<Self, EstimateError> {
+        let block = block + 1;
+        let y = equations
+            .y
+            .as_deref()
+            .ok_or(EstimateError::NoMeasurements { block })?;
+        check(equations, y, block)?;
+        let width = equations.columns.len() + 1;
+        let starts: Vec<usize> = (0..equations.rows).step_by(ROWS).collect();
+        let parts: Vec<Mat<f64>> = starts
+            .into_par_iter()
+            .map(|start| {
+                let rows = ROWS.min(equations.rows - start);
+                upper(Mat::from_fn(rows, width, |i, k| {
+                    let row = start + i;
+                    let value = if k + 1 < width {
+                        equations.column(k)[row]
+                    } else {
+                        y[row]
+                    };
+                    value * factors.map_or(1.0, |factors| factors[row])
+                }))
+            })
+            .collect();
+        let r = parts.into_iter().reduce(|a, b| upper(stack(&a, &b)));
+        Ok(Triangle {
+            columns: equations.columns.clone(),
+            rows: equations.rows,
+            r: r.unwrap_or_else(|| Mat::zeros(0, width)),
+        })
+    }
+
+    /// \\( \|Y - W X\| \\) for parameters X of the whole model.
+    pub fn residual_norm(&self, parameters: &[f64]) -> f64 {
+        let last = self.columns.len();
+        let row = |i: usize| {
+            let product = self.columns.iter().enumerate();
+            let sum: f64 = product.map(|(k, c)| self.r[(i, k)] * parameters[*c]).sum();
+            self.r[(i, last)] - sum
+        };
+        (0..self.r.nrows())
+            .map(|i| row(i).powi(2))
+            .sum::<f64>()
+            .sqrt()
+    }
+
+    /// \\( \|Y\| \\).
+    pub fn measurement_norm(&self) -> f64 {
+        self.r.col(self.columns.len()).norm_l2()
+    }
+}
+
+/// Stacks the factors of several blocks, each multiplied by its factor, over all `np` parameters
+/// and the measurements, and triangularises again: `[W | Y]` of the whole system.
+pub(super) fn join(triangles: &[Triangle], factors: &[f64], np: usize) -> Mat<f64> {
+    let rows = triangles.iter().map(|t| t.r.nrows()).sum();
+    let mut all = Mat::zeros(rows, np + 1);
+    let mut start = 0;
+    for (triangle, factor) in triangles.iter().zip(factors) {
+        let places = triangle.columns.iter().copied().chain([np]);
+        for (k, place) in places.enumerate() {
+            for i in 0..triangle.r.nrows() {
+                all[(start + i, place)] = triangle.r[(i, k)] * factor;
+            }
+        }
+        start += triangle.r.nrows();
+    }
+    upper(all)
+}
+
+/// Upper trapezoidal factor of the QR decomposition, with zeros below.
+pub(super) fn upper(matrix: Mat<f64>) -> Mat<f64> {
+    let qr = matrix.qr();
+    let r: MatRef<'_, f64> = qr.thin_R();
+    Mat::from_fn(
+        r.nrows(),
+        r.ncols(),
+        |i, k| if i <= k { r[(i, k)] } else { 0.0 },
+    )
+}
+
+fn stack(a: &Mat<f64>, b: &Mat<f64>) -> Mat<f64> {
+    let row = |i: usize, k: usize| {
+        if i < a.nrows() {
+            a[(i, k)]
+        } else {
+            b[(i - a.nrows(), k)]
+        }
+    };
+    Mat::from_fn(a.nrows() + b.nrows(), a.ncols(), row)
+}
+
+fn check(equations: &Equations, y: &[f64], block: usize) -> Result<(), EstimateError> {
+    if let Some(row) = y.iter().position(|y| !y.is_finite()) {
+        return Err(EstimateError::NotFinite {
+            what: "the measurement",
+            block,
+            row,
+        });
+    }
+    match equations.w.iter().position(|w| !w.is_finite()) {
+        Some(place) => {
+            let row = place % equations.rows.max(1);
+            Err(EstimateError::NotFinite {
+                what: "the regressor",
+                block,
+                row,
+            })
+        }
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,201 @@
+//! Filters chosen from the data, by the rules of Gautier 1996, section 6.
+
+use super::IdentifyError;
+use crate::log::Recording;
+use crate::settings::Edges;
+use crate::signal::bandwidth;
+
+/// Order of the Butterworth prefilter: more than 2, so that two differentiations stay band-pass
+/// (section 6.2).
+pub(super) const ORDER: usize = 4;
+
+/// Cut-off of the prefilter over the band of the motion: \\( \omega_{fq} > 10\,\omega_{dyn} \\).
+const FQ_OVER_DYN: f64 = 10.0;
+
+/// Cut-off of the parallel filter over the band of the motion: \\( \omega_{fp} = 5\,\omega_{dyn} \\).
+const FP_OVER_DYN: f64 = 5.0;
+
+/// The prefilter stays below this share of half the sampling rate, where central differences
+/// still are derivatives.
+const FQ_OVER_NYQUIST: f64 = 0.4;
+
+/// Cut-off of the decimation's low-pass over half the decimated rate.
+const FP_OVER_DECIMATED: f64 = 0.8;
+
+/// Equations per parameter that decimation leaves at least, where the log allows it.
+const ROWS_PER_PARAMETER: usize = 10;
+
+/// Periods of the prefilter's cut-off that are cut off at either end.
+const PERIODS: f64 = 2.0;
+
+/// The filters, and which of them were chosen here.
+pub(super) struct Chosen {
+    pub fq_hz: f64,
+    pub nd: usize,
+    pub trim: usize,
+    pub names: Vec<&'static str>,
+}
+
+/// Completes what is `given` (cut-off of the prefilter, ratio, trim) from the logs.
+pub(super) fn from_logs(
+    logs: &[Recording],
+    parameters: usize,
+    edges: Edges,
+    given: (Option<f64>, Option<usize>, Option<usize>),
+) -> Result<Chosen, IdentifyError> {
+    for log in logs {
+        if !(log.rate_hz > 0.0 && log.rate_hz.is_finite()) {
+            return Err(IdentifyError::Rate {
+                log: log.name.clone(),
+                rate_hz: log.rate_hz,
+            });
+        }
+    }
+    let rate_hz = logs
+        .iter()
+        .map(|log| log.rate_hz)
+        .reduce(f64::min)
+        .ok_or(IdentifyError::NoLogs)?;
+    let (fq, nd, trim) = given;
+    let dyn_hz = match fq.is_none() || nd.is_none() {
+        true => motion_band(logs)?,
+        false => 0.0,
+    };
+    let mut names = Vec::new();
+    let mut choose = |name, is_open: bool| {
+        if is_open {
+            names.push(name);
+        }
+    };
+    choose("fq_hz", fq.is_none());
+    choose("nd", nd.is_none());
+    choose("trim", trim.is_none());
+    let fq_hz = fq.unwrap_or_else(|| cut_off(dyn_hz, rate_hz));
+    let nd = nd.unwrap_or_else(|| ratio(dyn_hz, rate_hz, logs, parameters));
+    let trim = trim.unwrap_or_else(|| edge(fq_hz, rate_hz, nd, edges));
+    Ok(Chosen {
+        fq_hz,
+        nd,
+        trim,
+        names,
+    })
+}
+
+/// The widest band of any joint in any log, \\( \omega_{dyn} \\) in Hz.
+fn motion_band(logs: &[Recording]) -> Result<f64, IdentifyError> {
+    let joints = logs
+        .iter()
+        .flat_map(|log| log.q.iter().map(|q| bandwidth(q, log.rate_hz)));
+    joints.flatten().reduce(f64::max).ok_or_else(|| {
+        let logs = logs
+            .iter()
+            .map(|log| log.name.as_str())
+            .collect::<Vec<_>>()
+            .join(", ");
+        IdentifyError::NothingMoves { logs }
+    })
+}
+
+/// Cut-off of the prefilter, Hz, to two digits.
+fn cut_off(dyn_hz: f64, rate_hz: f64) -> f64 {
+    two_digits((FQ_OVER_DYN * dyn_hz).min(FQ_OVER_NYQUIST * rate_hz / 2.0))
+}
+
+fn two_digits(x: f64) -> f64 {
+    let unit = 10f64.powf(x.log10().floor() - 1.0);
+    let rounded = (x / unit).round() * unit;
+    // Through text, so that 0.1 * 87 prints as 8.7.
+    format!("{rounded:.12e}").parse().unwrap_or(rounded)
+}
+
+/// Decimation ratio: \\( n_d = 0.8 (\omega_c / 2) / \omega_{fp} \\), less if too few rows remain.
+fn ratio(dyn_hz: f64, rate_hz: f64, logs: &[Recording], parameters: usize) -> usize {
+    let by_band = FP_OVER_DECIMATED * rate_hz / 2.0 / (FP_OVER_DYN * dyn_hz);
+    let samples: usize = logs.iter().map(|log| log.len).sum();
+    let by_rows = samples / (ROWS_PER_PARAMETER * parameters.max(1));
+    (by_band.floor().min(1e6) as usize).min(by_rows).max(1)
+}
+
+/// What to cut off at either end: the prefilter's transient, in samples, or in decimated rows and
+/// then at least two, for the transient of the decimation.
+fn edge(fq_hz: f64, rate_hz: f64, nd: usize, edges: Edges) -> usize {
+    let samples = (PERIODS * rate_hz / fq_hz.max(f64::MIN_POSITIVE))
+        .ceil()
+        .clamp(0.0, 1e9) as usize;
+    match edges {
+        Edges::Scipy => samples,
+        Edges::Matlab => samples.div_ceil(nd.max(1)).max(2),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn log(hz: f64, rate_hz: f64, len: usize) -> Recording {
+        let wave = |i| (std::f64::consts::TAU * hz * i as f64 / rate_hz).sin();
+        Recording {
+            name: "log.csv".into(),
+            stem: "log".into(),
+            rate_hz,
+            start: 0.0,
+            len,
+            q: vec![(0..len).map(wave).collect()],
+            qd: None,
+            tau: None,
+            stamps: Vec::new(),
+            warnings: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn filters_follow_the_band_of_the_motion() {
+        let logs = [log(2.0, 1000.0, 10_000)];
+        let chosen = from_logs(&logs, 5, Edges::Scipy, (None, None, None)).unwrap();
+        assert!((20.0..25.0).contains(&chosen.fq_hz), "{}", chosen.fq_hz);
+        assert!((32..=40).contains(&chosen.nd), "{}", chosen.nd);
+        assert_eq!(chosen.names, ["fq_hz", "nd", "trim"]);
+    }
+
+    #[test]
+    fn given_choices_are_kept() {
+        let logs = [log(2.0, 1000.0, 10_000)];
+        let chosen = from_logs(&logs, 5, Edges::Matlab, (Some(7.0), Some(3), Some(0))).unwrap();
+        assert_eq!((chosen.fq_hz, chosen.nd, chosen.trim), (7.0, 3, 0));
+        assert!(chosen.names.is_empty());
+    }
+
+    #[test]
+    fn a_short_log_is_decimated_less() {
+        let logs = [log(1.0, 1000.0, 3000)];
+        let chosen = from_logs(&logs, 30, Edges::Scipy, (None, None, None)).unwrap();
+        assert_eq!(chosen.nd, 10);
+    }
+
+    #[test]
+    fn two_digits_read_well() {
+        assert_eq!(two_digits(8.7449), 8.7);
+        assert_eq!(two_digits(123.4), 120.0);
+        assert_eq!(two_digits(0.0345), 0.035);
+    }
+
+    #[test]
+    fn logs_without_motion_or_rate_are_errors() {
+        let logs = [log(0.0, 100.0, 500)];
+        let error = from_logs(&logs, 5, Edges::Scipy, (None, None, None)).err();
+        assert_eq!(
+            error,
+            Some(IdentifyError::NothingMoves {
+                logs: "log.csv".into()
+            })
+        );
+        let error = from_logs(&[], 5, Edges::Scipy, (None, None, None)).err();
+        assert_eq!(error, Some(IdentifyError::NoLogs));
+        let logs = [Recording {
+            rate_hz: f64::NAN,
+            ..log(1.0, 100.0, 500)
+        }];
+        let error = from_logs(&logs, 5, Edges::Scipy, (None, None, None)).err();
+        assert!(matches!(error, Some(IdentifyError::Rate { .. })));
+    }
+}

@@ -1,0 +1,47 @@
+//! Why an identification cannot be done.
+
+use crate::estimate::EstimateError;
+use crate::observe::{ModelKind, ObserveError};
+
+/// Why an identification or a prediction cannot be done.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum IdentifyError {
+    /// No log to identify from.
+    #[error("there is no log to identify from; give at least one")]
+    NoLogs,
+    /// The filters cannot be chosen because nothing moves.
+    #[error("no joint moves in {logs}: a robot at rest has no dynamics to identify")]
+    NothingMoves {
+        /// Names of the logs.
+        logs: String,
+    },
+    /// A sampling rate that is not a positive number.
+    #[error("{log}: the sampling rate {rate_hz} Hz is not a positive number")]
+    Rate {
+        /// Recording.
+        log: String,
+        /// What it says.
+        rate_hz: f64,
+    },
+    /// A log cannot be turned into equations.
+    #[error(transparent)]
+    Observe(#[from] ObserveError),
+    /// The equations cannot be solved.
+    #[error("the {} model: {source}", model.name())]
+    Estimate {
+        /// Which model.
+        model: ModelKind,
+        /// Why.
+        source: EstimateError,
+    },
+    /// A wrong number of parameters for a prediction.
+    #[error("{has} parameters were given and the robot {robot} has {needs}")]
+    Parameters {
+        /// The robot.
+        robot: String,
+        /// Parameters given.
+        has: usize,
+        /// Parameters of the model.
+        needs: usize,
+    },
+}

@@ -1,0 +1,102 @@
+//! What the user may choose, and how it becomes a plan.
+
+use super::{IdentifyError, choice};
+use crate::log::Recording;
+use crate::model::IdentificationModel;
+use crate::observe::{Filtering, ModelKind};
+use crate::settings::{Edges, Velocity, Weights};
+
+/// Choices of the user. Each that is `None` is taken from the robot's settings
+/// ([`IdentificationModel::settings`]), and failing that from the data.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Options {
+    /// Models to identify; empty for all three.
+    pub models: Vec<ModelKind>,
+    /// Cut-off of the prefilter of q, Hz.
+    pub fq_hz: Option<f64>,
+    /// Order of the Butterworth prefilter.
+    pub order: Option<usize>,
+    /// Decimation ratio n_d.
+    pub nd: Option<usize>,
+    /// What is cut off at either end; its unit follows from the edge rule.
+    pub trim: Option<usize>,
+    /// Samples cut off at the start and at the end before decimation.
+    pub border: Option<(usize, usize)>,
+    /// Edge rule.
+    pub edges: Option<Edges>,
+    /// Source of the velocity.
+    pub velocity: Option<Velocity>,
+    /// Whether the torque passes the prefilter too.
+    pub prefilter_torque: Option<bool>,
+    /// Weights of the equations.
+    pub weights: Option<Weights>,
+}
+
+/// An identification with every choice made.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plan {
+    /// Models to identify, each once, in the order of the paper.
+    pub models: Vec<ModelKind>,
+    /// Filters.
+    pub filtering: Filtering,
+    /// Weights of the equations.
+    pub weights: Weights,
+}
+
+impl Options {
+    /// Makes every choice: the option, else the robot's setting, else a default or what
+    /// [`Plan`]'s rules make of the logs.
+    ///
+    /// # Errors
+    /// [`IdentifyError::NoLogs`]; [`IdentifyError::Rate`]; [`IdentifyError::NothingMoves`] if a
+    /// cut-off or the decimation ratio would have to be chosen from logs without motion.
+    pub fn resolve(
+        &self,
+        model: &dyn IdentificationModel,
+        train: &[Recording],
+    ) -> Result<Plan, IdentifyError> {
+        let set = model.settings();
+        let edges = self.edges.or(set.edges).unwrap_or(Edges::Scipy);
+        let order = self.order.or(set.order).unwrap_or(choice::ORDER);
+        let (fq_hz, nd) = (self.fq_hz.or(set.fq_hz), self.nd.or(set.nd));
+        let trim = self.trim.or(set.trim);
+        let chosen = choice::from_logs(train, model.columns().len(), edges, (fq_hz, nd, trim))?;
+        let filtering = Filtering {
+            fq_hz: chosen.fq_hz,
+            order,
+            nd: chosen.nd,
+            trim: chosen.trim,
+            border: self.border.or(set.border).unwrap_or((0, 0)),
+            edges,
+            velocity: self.velocity.or(set.velocity).unwrap_or(Velocity::Derived),
+            prefilter_torque: self
+                .prefilter_torque
+                .or(set.prefilter_torque)
+                .unwrap_or(false),
+            chosen: chosen.names,
+        };
+        let weights = self.weights.or(set.weights).unwrap_or(Weights::Joint);
+        Ok(Plan {
+            models: self.kinds(),
+            filtering,
+            weights,
+        })
+    }
+
+    fn kinds(&self) -> Vec<ModelKind> {
+        let asked = |kind: &ModelKind| self.models.is_empty() || self.models.contains(kind);
+        ModelKind::ALL.into_iter().filter(asked).collect()
+    }
+}
+
+impl Plan {
+    /// The models whose equations are needed: those asked for, and the explicit one to predict
+    /// torque with the parameters of the power model.
+    pub(super) fn observed(&self) -> Vec<ModelKind> {
+        let needed = |kind: &ModelKind| {
+            self.models.contains(kind)
+                || (*kind == ModelKind::Explicit && self.models.contains(&ModelKind::Power))
+        };
+        ModelKind::ALL.into_iter().filter(needed).collect()
+    }
+}

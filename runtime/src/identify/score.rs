@@ -1,0 +1,77 @@
+//! How well parameters explain torque.
+
+use crate::model::IdentificationModel;
+use crate::observe::{Equations, Observations};
+use crate::report::{Fit, JointFit};
+
+/// Error of the torque of each joint and of all: \\( 100 \|\tau - W X\| / \|\tau\| \\) on the
+/// filtered, decimated signals.
+pub(super) fn torque(
+    model: &dyn IdentificationModel,
+    observations: &Observations,
+    parameters: &[f64],
+) -> Fit {
+    let errors: Vec<Squares> = observations
+        .blocks
+        .iter()
+        .map(|block| Squares::of(block, parameters))
+        .collect();
+    let joints = errors.iter().zip(model.joints());
+    let joints = joints.map(|(error, joint)| JointFit {
+        name: joint.name.to_string(),
+        rmse: error.rmse(),
+        rel_pct: error.rel_pct(),
+    });
+    Fit {
+        total_pct: Squares::sum(&errors).rel_pct(),
+        joints: joints.collect(),
+    }
+}
+
+/// Error of all equations together, in percent of the measurements.
+pub(super) fn equations(observations: &Observations, parameters: &[f64]) -> f64 {
+    let errors: Vec<Squares> = observations
+        .blocks
+        .iter()
+        .map(|block| Squares::of(block, parameters))
+        .collect();
+    Squares::sum(&errors).rel_pct()
+}
+
+/// Sums of squares over equations.
+struct Squares {
+    rows: usize,
+    residual: f64,
+    measured: f64,
+}
+
+impl Squares {
+    fn of(block: &Equations, parameters: &[f64]) -> Self {
+        let square = |values: &[f64]| values.iter().map(|x| x * x).sum();
+        Squares {
+            rows: block.rows,
+            residual: square(&block.residual(parameters)),
+            measured: block.y.as_deref().map_or(0.0, square),
+        }
+    }
+
+    fn sum(all: &[Squares]) -> Self {
+        Squares {
+            rows: all.iter().map(|s| s.rows).sum(),
+            residual: all.iter().map(|s| s.residual).sum(),
+            measured: all.iter().map(|s| s.measured).sum(),
+        }
+    }
+
+    fn rmse(&self) -> f64 {
+        (self.residual / self.rows.max(1) as f64).sqrt()
+    }
+
+    /// Zero when there is nothing to explain and nothing is predicted.
+    fn rel_pct(&self) -> f64 {
+        match self.residual {
+            0.0 => 0.0,
+            residual => 100.0 * (residual / self.measured).sqrt(),
+        }
+    }
+}

@@ -1,0 +1,123 @@
+//! What is to be said about logs and estimates, in full sentences.
+
+use super::{Observed, Plan};
+use crate::estimate::{Dependency, Estimate};
+use crate::log::Recording;
+use crate::model::IdentificationModel;
+use crate::observe::ModelKind;
+
+/// A named list longer than this is cut short.
+const LONGEST_LIST: usize = 12;
+
+/// Warnings of the logs themselves, and of logs that do not go together.
+pub(super) fn of_logs(
+    model: &dyn IdentificationModel,
+    train: &[Recording],
+    validate: &[Recording],
+    plan: &Plan,
+) -> Vec<String> {
+    let mut warnings: Vec<String> = train
+        .iter()
+        .chain(validate)
+        .flat_map(|log| log.warnings.iter().cloned())
+        .collect();
+    let Some(first) = train.first() else {
+        return warnings;
+    };
+    for log in train.iter().chain(validate) {
+        if (log.rate_hz / first.rate_hz - 1.0).abs() > 1e-6 {
+            warnings.push(format!(
+                "{} is sampled at {} Hz and {} at {} Hz; both are decimated by {}, so their \
+                 parallel filters differ.",
+                log.name, log.rate_hz, first.name, first.rate_hz, plan.filtering.nd
+            ));
+        }
+    }
+    if model.columns().is_empty() {
+        warnings.push(format!("{} has no parameters to identify.", model.name()));
+    }
+    warnings
+}
+
+/// What the data do not determine, by cause.
+pub(super) fn of_estimate(
+    model: &dyn IdentificationModel,
+    kind: ModelKind,
+    estimate: &Estimate,
+    observed: &[Observed],
+) -> Vec<String> {
+    let resting = Observed::join(observed).resting;
+    let mut unseen = estimate.unseen.clone();
+    let mut warnings = Vec::new();
+    for joint in resting {
+        let of_joint = |c: &usize| {
+            model
+                .columns()
+                .get(*c)
+                .is_some_and(|c| c.joint == joint + 1)
+        };
+        let lost: Vec<usize> = unseen.iter().copied().filter(of_joint).collect();
+        unseen.retain(|c| !of_joint(c));
+        let end = match lost.is_empty() {
+            true => String::new(),
+            false => format!(": {} cannot be identified", names(model, &lost)),
+        };
+        warnings.push(format!("{} never moves{end}.", joint_name(model, joint)));
+    }
+    if !unseen.is_empty() {
+        warnings.push(format!(
+            "{} cannot be identified: nothing in these logs depends on them ({} model).",
+            names(model, &unseen),
+            kind.name()
+        ));
+    }
+    warnings.extend(
+        estimate
+            .dependent
+            .iter()
+            .map(|group| dependency(model, kind, group)),
+    );
+    warnings
+}
+
+fn dependency(model: &dyn IdentificationModel, kind: ModelKind, group: &Dependency) -> String {
+    format!(
+        "{} cannot be identified one by one: these logs determine {} of the {} ({} model); \
+         excite the robot differently.",
+        names(model, &group.columns),
+        match group.combinations {
+            0 => "none".to_owned(),
+            1 => "one combination".to_owned(),
+            n => format!("{n} combinations"),
+        },
+        group.columns.len(),
+        kind.name()
+    )
+}
+
+/// Each sentence once, in the order of first appearance.
+pub(super) fn once_each(warnings: Vec<String>) -> Vec<String> {
+    let mut once: Vec<String> = Vec::with_capacity(warnings.len());
+    for warning in warnings {
+        if !once.contains(&warning) {
+            once.push(warning);
+        }
+    }
+    once
+}
+
+fn joint_name(model: &dyn IdentificationModel, joint: usize) -> String {
+    let name = model.joints().get(joint).map_or("", |j| j.name.as_ref());
+    format!("joint {} ({name})", joint + 1)
+}
+
+fn names(model: &dyn IdentificationModel, columns: &[usize]) -> String {
+    let all = columns.iter().filter_map(|c| model.columns().get(*c));
+    let mut list: Vec<&str> = all.map(|column| column.name.as_ref()).collect();
+    let more = list.len().saturating_sub(LONGEST_LIST);
+    list.truncate(LONGEST_LIST);
+    match more {
+        0 => list.join(", "),
+        more => format!("{} and {more} more", list.join(", ")),
+    }
+}

@@ -1,0 +1,63 @@
+//! The filters of an identification, every choice made.
+
+use serde::Serialize;
+
+use crate::settings::{Edges, Velocity};
+use crate::signal::{Decimator, SignalError, ZeroPhase, butterworth};
+
+/// The filters of an identification (Gautier 1996, section 6), every choice made.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Filtering {
+    /// Cut-off of the zero-phase Butterworth prefilter of q, Hz.
+    pub fq_hz: f64,
+    /// Order of the prefilter, one pass.
+    pub order: usize,
+    /// Decimation ratio n_d.
+    pub nd: usize,
+    /// What is cut off at either end, to forget the edges of the filters: samples before the
+    /// parallel filter ([`Edges::Scipy`]) or decimated rows after it ([`Edges::Matlab`]).
+    pub trim: usize,
+    /// Samples cut off at the start and at the end before the parallel filter.
+    pub border: (usize, usize),
+    /// Edge rule of the filters and of the decimation.
+    pub edges: Edges,
+    /// Source of the velocity.
+    pub velocity: Velocity,
+    /// Whether the torque passes the prefilter too.
+    pub prefilter_torque: bool,
+    /// The names of those of the above that were chosen from the data.
+    pub chosen: Vec<&'static str>,
+}
+
+impl Filtering {
+    /// The prefilter for signals sampled at `rate_hz`.
+    pub(super) fn prefilter(&self, rate_hz: f64) -> Result<ZeroPhase, SignalError> {
+        let cascade = butterworth(self.order, self.fq_hz, rate_hz)?;
+        Ok(ZeroPhase::new(cascade, self.order, self.edges))
+    }
+
+    /// The parallel filter and decimation for signals sampled at `rate_hz`.
+    pub(super) fn decimator(&self, rate_hz: f64) -> Result<Decimator, SignalError> {
+        Decimator::new(self.nd, rate_hz, self.edges)
+    }
+
+    /// Samples cut off at the start and at the end before the parallel filter.
+    pub(super) fn cut_before(&self) -> (usize, usize) {
+        let trim = match self.edges {
+            Edges::Scipy => self.trim,
+            Edges::Matlab => 0,
+        };
+        (
+            self.border.0.saturating_add(trim),
+            self.border.1.saturating_add(trim),
+        )
+    }
+
+    /// Decimated rows cut off at either end after the parallel filter.
+    pub(super) fn cut_after(&self) -> usize {
+        match self.edges {
+            Edges::Scipy => 0,
+            Edges::Matlab => self.trim,
+        }
+    }
+}

@@ -1,0 +1,72 @@
+//! From a log to the observation matrix W and the measurements Y.
+//!
+//! The steps of Gautier 1996, section 6: [`Motion`] holds the prefiltered positions and their
+//! central differences; [`observe`] evaluates the model's outputs along it, low-passes and
+//! decimates them in parallel and spreads them over the equations of each joint. The torque goes
+//! into Y only: W is a function of the motion alone.
+
+mod equations;
+mod error;
+mod filtering;
+mod motion;
+mod regressor;
+
+pub use equations::{Equations, Observations, observe};
+pub use error::ObserveError;
+pub use filtering::Filtering;
+pub use motion::Motion;
+pub use regressor::{contract, decimated};
+
+use serde::Serialize;
+
+use crate::model::Output;
+
+/// The three identification models of Gautier 1996.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum ModelKind {
+    /// \\( \tau = D(q, \dot q, \ddot q) X \\), eq. (17).
+    Explicit,
+    /// \\( \tau = \frac{d}{dt}(P X) + R X \\), eq. (19).
+    Implicit,
+    /// \\( \dot q^T \tau = (\frac{d}{dt} h + dh) X \\), eq. (23).
+    Power,
+}
+
+/// What is decimated: an output itself, or its time derivative.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Treatment {
+    /// The output as it is.
+    Value,
+    /// The derivative of the low-passed output.
+    Rate,
+}
+
+impl ModelKind {
+    /// All three, in the order of the paper.
+    pub const ALL: [ModelKind; 3] = [ModelKind::Explicit, ModelKind::Implicit, ModelKind::Power];
+
+    /// Lower-case name, as on the command line and in the JSON.
+    pub fn name(self) -> &'static str {
+        match self {
+            ModelKind::Explicit => "explicit",
+            ModelKind::Implicit => "implicit",
+            ModelKind::Power => "power",
+        }
+    }
+
+    /// The outputs whose sum is the regressor of this model.
+    pub fn terms(self) -> &'static [(Output, Treatment)] {
+        match self {
+            ModelKind::Explicit => &[(Output::Explicit, Treatment::Value)],
+            ModelKind::Implicit => &[
+                (Output::Momentum, Treatment::Rate),
+                (Output::Rest, Treatment::Value),
+            ],
+            ModelKind::Power => &[
+                (Output::Energy, Treatment::Rate),
+                (Output::Power, Treatment::Value),
+            ],
+        }
+    }
+}

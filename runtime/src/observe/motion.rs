@@ -1,0 +1,187 @@
+//! Filtered motion: position, velocity, acceleration and torque at the full rate.
+
+use super::{Filtering, ObserveError};
+use crate::log::Recording;
+use crate::settings::Velocity;
+use crate::signal::central_difference;
+
+/// A joint whose position stays within this range, rad or m, is at rest: its velocity would be
+/// nothing but sensor noise, and the sign of it a coin toss.
+const REST: f64 = 1e-5;
+
+/// Joint states along a log at its full rate, filtered without phase shift (Gautier 1996,
+/// section 6.2), one series per joint.
+#[derive(Clone, Debug)]
+pub struct Motion {
+    /// Name of the recording.
+    pub log: String,
+    /// Sampling rate, Hz.
+    pub rate_hz: f64,
+    /// Number of samples.
+    pub len: usize,
+    /// Filtered positions, rad or m.
+    pub q: Vec<Vec<f64>>,
+    /// Velocities, rad/s or m/s.
+    pub qd: Vec<Vec<f64>>,
+    /// Accelerations, rad/s^2 or m/s^2.
+    pub qdd: Vec<Vec<f64>>,
+    /// Torques, N m or N, if the log has them.
+    pub tau: Option<Vec<Vec<f64>>>,
+    /// Joints that never move, counted from 0; they are held at their mean position.
+    pub resting: Vec<usize>,
+}
+
+impl Motion {
+    /// Filters and differentiates a recording, without the samples at its edges that the filters
+    /// falsify and [`Filtering`] gives up: ready to be observed.
+    ///
+    /// # Errors
+    /// Those of [`Motion::full`], and [`ObserveError::NothingLeft`].
+    pub fn trimmed(
+        recording: &Recording,
+        joints: usize,
+        filtering: &Filtering,
+    ) -> Result<Self, ObserveError> {
+        Motion::full(recording, joints, filtering)?.cut(filtering.cut_before())
+    }
+
+    /// Filters and differentiates a recording over its whole length.
+    ///
+    /// # Errors
+    /// [`ObserveError::Joints`], [`ObserveError::Length`], [`ObserveError::NotFinite`] if the
+    /// recording does not fit a robot of `joints` joints; [`ObserveError::NoVelocity`];
+    /// [`ObserveError::Filter`] if the log is too short or the cut-off impossible.
+    pub fn full(
+        recording: &Recording,
+        joints: usize,
+        filtering: &Filtering,
+    ) -> Result<Self, ObserveError> {
+        check(recording, joints)?;
+        let rate_hz = recording.rate_hz;
+        let fail = ObserveError::filter(&recording.name, "prefilter");
+        let prefilter = filtering.prefilter(rate_hz).map_err(&fail)?;
+        let smooth = |series: &[Vec<f64>]| prefilter.filter(series).map_err(&fail);
+        let q = smooth(&recording.q)?;
+        let qd = match (filtering.velocity, &recording.qd) {
+            (Velocity::Derived, _) => derivatives(&q, rate_hz),
+            (Velocity::Measured, Some(qd)) => smooth(qd)?,
+            (Velocity::Measured, None) => {
+                return Err(ObserveError::NoVelocity {
+                    log: recording.name.clone(),
+                });
+            }
+        };
+        let tau = match &recording.tau {
+            Some(tau) if filtering.prefilter_torque => Some(smooth(tau)?),
+            tau => tau.clone(),
+        };
+        let (log, len) = (recording.name.clone(), recording.len);
+        let qdd = derivatives(&qd, rate_hz);
+        let mut motion = Motion {
+            log,
+            rate_hz,
+            len,
+            q,
+            qd,
+            qdd,
+            tau,
+            resting: Vec::new(),
+        };
+        motion.hold_resting_joints(&recording.q);
+        Ok(motion)
+    }
+
+    /// The motion without its first `start` and last `end` samples.
+    fn cut(mut self, (start, end): (usize, usize)) -> Result<Self, ObserveError> {
+        let cut = start.saturating_add(end);
+        if cut >= self.len {
+            let (log, has) = (self.log, self.len);
+            return Err(ObserveError::NothingLeft {
+                log,
+                cut,
+                has,
+                unit: "samples",
+            });
+        }
+        let keep = start..self.len - end;
+        self.len = keep.len();
+        let series = self.q.iter_mut().chain(&mut self.qd).chain(&mut self.qdd);
+        for values in series.chain(self.tau.iter_mut().flatten()) {
+            *values = values[keep.clone()].to_vec();
+        }
+        Ok(self)
+    }
+
+    fn hold_resting_joints(&mut self, raw: &[Vec<f64>]) {
+        for (joint, series) in raw.iter().enumerate() {
+            let low = series.iter().copied().fold(f64::INFINITY, f64::min);
+            let high = series.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            if high - low <= REST {
+                let mean = series.iter().sum::<f64>() / series.len() as f64;
+                self.q[joint].fill(mean);
+                self.qd[joint].fill(0.0);
+                self.qdd[joint].fill(0.0);
+                self.resting.push(joint);
+            }
+        }
+    }
+}
+
+fn derivatives(series: &[Vec<f64>], rate_hz: f64) -> Vec<Vec<f64>> {
+    series
+        .iter()
+        .map(|signal| central_difference(signal, rate_hz))
+        .collect()
+}
+
+/// Checks that every series has one finite value per joint and sample. Torque may hold anything
+/// here: it never enters W, and estimation checks it.
+fn check(recording: &Recording, joints: usize) -> Result<(), ObserveError> {
+    let channels = [("q", Some(&recording.q)), ("qd", recording.qd.as_ref())];
+    for (name, series) in channels
+        .into_iter()
+        .chain([("tau", recording.tau.as_ref())])
+    {
+        let Some(series) = series else { continue };
+        if series.len() != joints {
+            let (log, has) = (recording.name.clone(), series.len());
+            return Err(ObserveError::Joints {
+                log,
+                has,
+                needs: joints,
+            });
+        }
+        for (joint, values) in series.iter().enumerate() {
+            check_series(recording, name, joint + 1, values)?;
+        }
+    }
+    Ok(())
+}
+
+fn check_series(
+    recording: &Recording,
+    series: &'static str,
+    joint: usize,
+    values: &[f64],
+) -> Result<(), ObserveError> {
+    let log = || recording.name.clone();
+    let (has, needs) = (values.len(), recording.len);
+    if has != needs {
+        return Err(ObserveError::Length {
+            log: log(),
+            series,
+            joint,
+            has,
+            needs,
+        });
+    }
+    match values.iter().position(|x| !x.is_finite()) {
+        Some(sample) if series != "tau" => Err(ObserveError::NotFinite {
+            log: log(),
+            series,
+            joint,
+            sample,
+        }),
+        _ => Ok(()),
+    }
+}

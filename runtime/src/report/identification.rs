@@ -1,0 +1,132 @@
+//! The result of an identification.
+
+use serde::Serialize;
+
+use crate::model::ColumnKind;
+use crate::observe::{Filtering, ModelKind};
+use crate::settings::Weights;
+
+/// Result of an identification: the three models side by side.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Identification {
+    /// The robot's name.
+    pub robot: String,
+    /// Samples of all training logs, before decimation.
+    pub samples: usize,
+    /// Sampling rate of the (first) training log, Hz.
+    pub rate_hz: f64,
+    /// Names of the training logs.
+    pub logs: Vec<String>,
+    /// The filters, and which of them were chosen from the data.
+    pub filter: Filtering,
+    /// How the equations were weighted.
+    pub weights: Weights,
+    /// What the user ought to know, each a full sentence.
+    pub warnings: Vec<String>,
+    /// The models, in the order of the paper.
+    pub models: Vec<ModelResult>,
+}
+
+/// Result of one model.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ModelResult {
+    /// Explicit, implicit or power.
+    pub name: ModelKind,
+    /// Number of equations.
+    pub rows: usize,
+    /// 2-norm condition number of W, weighted as it was solved.
+    pub condition: f64,
+    /// 2-norm condition number of W without weights.
+    pub condition_unweighted: f64,
+    /// Numerical rank of W.
+    pub rank: usize,
+    /// Residual of the model's own equations in percent of Y: of the power for the power model.
+    pub equation_pct: f64,
+    /// The parameters, in the order of the robot's columns.
+    pub parameters: Vec<ParameterResult>,
+    /// Torque error on the training logs.
+    pub fit: Fit,
+    /// Torque error on each validation log.
+    pub validation: Vec<Validation>,
+}
+
+/// One identified parameter.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ParameterResult {
+    /// Name, such as `ZZR1`.
+    pub name: String,
+    /// SI unit.
+    pub unit: String,
+    /// Link or joint it belongs to, counted from 1.
+    pub joint: usize,
+    /// Inertial, drive, friction or effect.
+    pub kind: ColumnKind,
+    /// Identified value; `None` if the data do not determine it.
+    pub value: Option<f64>,
+    /// Standard deviation for independent errors (Gautier 1996, section 7.3).
+    pub sigma: Option<f64>,
+    /// Standard deviation that respects the autocorrelation of filtered residuals, if computed.
+    pub sigma_corrected: Option<f64>,
+    /// `100 * sigma / |value|`.
+    pub sigma_pct: Option<f64>,
+    /// The standard parameters it stands for.
+    pub relation: String,
+    /// The value used for prediction: `value`, or one of many equivalent values where the data
+    /// do not determine it.
+    pub solution: f64,
+}
+
+/// Torque error on one or several logs. For the power model, torque is predicted by the explicit
+/// model with its parameters.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Fit {
+    /// `100 * ||tau - W X|| / ||tau||` over all joints.
+    pub total_pct: f64,
+    /// Each joint.
+    pub joints: Vec<JointFit>,
+}
+
+/// Torque error of one joint.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct JointFit {
+    /// The joint's name.
+    pub name: String,
+    /// Root mean square error, N m or N.
+    pub rmse: f64,
+    /// `100 * ||tau - W X|| / ||tau||`.
+    pub rel_pct: f64,
+}
+
+/// Torque error on one validation log.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Validation {
+    /// Name of the log.
+    pub log: String,
+    /// The error.
+    #[serde(flatten)]
+    pub fit: Fit,
+}
+
+impl Identification {
+    /// The result of one model, if it was asked for.
+    pub fn model(&self, kind: ModelKind) -> Option<&ModelResult> {
+        self.models.iter().find(|model| model.name == kind)
+    }
+}
+
+impl ModelResult {
+    /// The parameters for prediction, in the order of the robot's columns.
+    pub fn solution(&self) -> Vec<f64> {
+        self.parameters
+            .iter()
+            .map(|parameter| parameter.solution)
+            .collect()
+    }
+
+    /// A parameter by its name.
+    pub fn parameter(&self, name: &str) -> Option<&ParameterResult> {
+        self.parameters
+            .iter()
+            .find(|parameter| parameter.name == name)
+    }
+}
