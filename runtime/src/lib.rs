@@ -6,8 +6,12 @@
 //! robots" (1996). The crate is generic over a robot ([`model::IdentificationModel`]); it never
 //! sees a description.
 
+pub mod estimate;
+pub mod identify;
 pub mod lane;
 pub mod log;
 pub mod model;
+pub mod observe;
+pub mod report;
 pub mod settings;
 pub mod signal;
