@@ -58,6 +58,8 @@ pub struct Robot {
     pub mechanism: Mechanism,
     /// The expressions of all outputs.
     pub graph: Graph,
+    /// Number of nodes after each link's share of the graph.
+    pub ends: Vec<usize>,
     /// The base parameters and their columns.
     pub base: BaseParameters,
 }
@@ -71,8 +73,9 @@ impl Robot {
         let mechanism = Mechanism::new(&description);
         let mut graph = Graph::new();
         let standard = derive::standard(&mut graph, &mechanism);
+        let (ends, standard) = (standard.ends, standard.parameters);
         let base = base::parameters(&mut graph, &mechanism, standard, &description.scaled)?;
-        Ok(Robot { description, mechanism, graph, base })
+        Ok(Robot { description, mechanism, graph, ends, base })
     }
 
     /// The non-zero entries of an output, by row, then by column.

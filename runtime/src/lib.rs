@@ -6,6 +6,7 @@
 //! robots" (1996). The crate is generic over a robot ([`model::IdentificationModel`]); it never
 //! sees a description.
 
+pub mod batch;
 pub mod estimate;
 pub mod identify;
 pub mod lane;

@@ -148,3 +148,24 @@ pub trait IdentificationModel: Send + Sync {
     /// to `signals[s * states.len + i]`.
     fn evaluate(&self, output: Output, states: &States<'_>, signals: &mut [f64]);
 }
+
+impl<T: IdentificationModel + ?Sized> IdentificationModel for &T {
+    fn name(&self) -> &str {
+        (**self).name()
+    }
+    fn joints(&self) -> &[Joint] {
+        (**self).joints()
+    }
+    fn columns(&self) -> &[Column] {
+        (**self).columns()
+    }
+    fn pattern(&self, output: Output) -> &Pattern {
+        (**self).pattern(output)
+    }
+    fn settings(&self) -> &Settings {
+        (**self).settings()
+    }
+    fn evaluate(&self, output: Output, states: &States<'_>, signals: &mut [f64]) {
+        (**self).evaluate(output, states, signals);
+    }
+}

@@ -35,10 +35,15 @@ pub fn apply(
 }
 
 fn divide(graph: &mut Graph, parameter: &mut BaseParameter, factor: f64) {
+    let name = parameter.name.to_lowercase();
     let columns = &mut parameter.columns;
-    let lists = [&mut columns.explicit, &mut columns.momentum, &mut columns.rest];
-    for (_, entry) in lists.into_iter().flatten() {
-        *entry = scale(graph, *entry, 1.0 / factor);
+    let lists =
+        [("d", &mut columns.explicit), ("p", &mut columns.momentum), ("r", &mut columns.rest)];
+    for (prefix, entries) in lists {
+        for (joint, entry) in entries {
+            *entry = scale(graph, *entry, 1.0 / factor);
+            graph.name(*entry, &format!("{prefix}{}_{name}", *joint + 1));
+        }
     }
     for entry in [&mut columns.energy, &mut columns.power].into_iter().flatten() {
         *entry = scale(graph, *entry, 1.0 / factor);

@@ -7,7 +7,7 @@ use super::motion::Motions;
 use super::vector::{cross, dot};
 
 /// Kinetic plus potential energy per unit of each of the ten parameters of a link.
-pub fn row(graph: &mut Graph, motions: &mut Motions, link: usize) -> Vec<Expr> {
+pub fn row(graph: &mut Graph, motions: &Motions, link: usize) -> Vec<Expr> {
     let m = motions.links[link];
     let vw = cross(graph, m.v, m.w);
     (0..10)

@@ -7,7 +7,7 @@ use super::motion::Motions;
 use super::vector::{Screw, dot};
 
 /// The columns of D of the ten parameters of a link: per parameter the non-zero (joint, entry).
-pub fn columns(graph: &mut Graph, motions: &mut Motions, link: usize) -> Vec<Vec<(usize, Expr)>> {
+pub fn columns(graph: &mut Graph, motions: &Motions, link: usize) -> Vec<Vec<(usize, Expr)>> {
     let motion = motions.links[link];
     (0..10)
         .map(|index| {

@@ -12,7 +12,7 @@ use super::motion::Motions;
 pub type Pair = (Vec<(usize, Expr)>, Vec<(usize, Expr)>);
 
 /// The columns of P and R of the ten parameters of a link.
-pub fn columns(graph: &mut Graph, motions: &mut Motions, link: usize) -> Vec<Pair> {
+pub fn columns(graph: &mut Graph, motions: &Motions, link: usize) -> Vec<Pair> {
     let motion = motions.links[link];
     (0..10)
         .map(|index| {

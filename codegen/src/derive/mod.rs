@@ -11,6 +11,7 @@ pub mod explicit;
 pub mod implicit;
 pub mod energy;
 pub mod motion;
+pub mod names;
 pub mod vector;
 
 use crate::expr::{Expr, Graph};
@@ -62,37 +63,56 @@ pub struct Columns {
     pub power: Option<Expr>,
 }
 
-/// All standard parameters of a mechanism, link by link, then the effects.
-pub fn standard(graph: &mut Graph, mechanism: &Mechanism) -> Vec<Standard> {
-    let mut motions = Motions::new(graph, mechanism);
-    let mut parameters = Vec::new();
+/// The standard parameters of a mechanism, and where in the graph each link's share ends.
+#[derive(Clone, Debug, Default)]
+pub struct StandardModel {
+    /// Link by link, then the effects.
+    pub parameters: Vec<Standard>,
+    /// Number of nodes after each link: what belongs to link k lies between ends k-1 and k.
+    pub ends: Vec<usize>,
+}
+
+/// All standard parameters of a mechanism. Link by link: its motion, then its columns, so that
+/// the order of the nodes is the order in which a person would write the model down.
+pub fn standard(graph: &mut Graph, mechanism: &Mechanism) -> StandardModel {
+    let mut motions = Motions::default();
+    let mut model = StandardModel::default();
     for link in 0..mechanism.joints.len() {
-        let explicit = explicit::columns(graph, &mut motions, link);
-        let implicit = implicit::columns(graph, &mut motions, link);
-        let energy = energy::row(graph, &mut motions, link);
-        for (index, name) in inertia::NAMES.iter().enumerate() {
-            let (momentum, rest) = implicit[index].clone();
-            parameters.push(Standard {
-                name: format!("{name}{}", link + 1),
-                unit: unit(index).into(),
-                meaning: meaning(index, link),
-                link,
-                kind: ParameterKind::Inertial(index),
-                columns: Columns {
-                    explicit: explicit[index].clone(),
-                    momentum,
-                    rest,
-                    energy: Some(energy[index]).filter(|&h| !graph.is_zero(h)),
-                    power: None,
-                },
-            });
-        }
+        motions.push(graph, mechanism);
+        inertial(graph, &motions, link, &mut model.parameters);
+        model.ends.push(graph.nodes().len());
     }
     let kinds: Vec<JointKind> = mechanism.joints.iter().map(|joint| joint.kind).collect();
     for effect in &mechanism.effects {
-        parameters.extend(effects::columns(graph, &kinds, effect));
+        model.parameters.extend(effects::columns(graph, &kinds, effect));
     }
-    parameters
+    model
+}
+
+/// The ten inertial parameters of a link.
+fn inertial(graph: &mut Graph, motions: &Motions, link: usize, parameters: &mut Vec<Standard>) {
+    let explicit = explicit::columns(graph, motions, link);
+    let implicit = implicit::columns(graph, motions, link);
+    let energy = energy::row(graph, motions, link);
+    let columns = explicit.into_iter().zip(implicit).zip(energy);
+    for (index, ((explicit, (momentum, rest)), energy)) in columns.enumerate() {
+        let name = format!("{}{}", inertia::NAMES[index], link + 1);
+        for (prefix, entries) in [("d", &explicit), ("p", &momentum), ("r", &rest)] {
+            for &(joint, entry) in entries {
+                let symbol = format!("{prefix}{}_{}", joint + 1, name.to_lowercase());
+                graph.name(entry, &symbol);
+            }
+        }
+        let energy = Some(energy).filter(|&h| !graph.is_zero(h));
+        parameters.push(Standard {
+            name,
+            unit: unit(index).into(),
+            meaning: meaning(index, link),
+            link,
+            kind: ParameterKind::Inertial(index),
+            columns: Columns { explicit, momentum, rest, energy, power: None },
+        });
+    }
 }
 
 fn unit(index: usize) -> &'static str {

@@ -4,6 +4,7 @@ use crate::expr::rotate::Rotator;
 use crate::expr::{Angle, AngleSum, Expr, Graph, Input};
 use crate::mechanism::{Joint, JointKind, Mechanism};
 
+use super::names;
 use super::vector::{Screw, Vec3, add, constant, cross, into_frame, zero};
 
 /// The motion of a link, components in its frame, about the origin of its frame.
@@ -37,33 +38,34 @@ pub struct Mover {
     pub rate: Screw,
 }
 
-/// All links' motions.
-#[derive(Debug)]
+/// The motions of the links, from the base outwards.
+#[derive(Debug, Default)]
 pub struct Motions {
     /// Per link.
     pub links: Vec<Motion>,
     /// Per link, the joints from the base to the link's own.
     pub movers: Vec<Vec<Mover>>,
+    rotator: Rotator,
 }
 
 impl Motions {
-    /// Computes them from the base outwards.
-    pub fn new(graph: &mut Graph, mechanism: &Mechanism) -> Motions {
-        let mut rotator = Rotator::default();
-        let mut all = Motions { links: Vec::new(), movers: Vec::new() };
-        for (index, joint) in mechanism.joints.iter().enumerate() {
-            let mut step = Step { graph, rotator: &mut rotator, joint, index };
-            let parent = match joint.parent {
-                Some(parent) => all.links[parent],
-                None => step.base(),
-            };
-            let motion = step.motion(&parent);
-            let above = joint.parent.map_or(&[][..], |parent| &all.movers[parent]);
-            let movers = step.movers(above, &motion);
-            all.links.push(motion);
-            all.movers.push(movers);
-        }
-        all
+    /// Computes the motion of the next link from that of its antecedent.
+    pub fn push(&mut self, graph: &mut Graph, mechanism: &Mechanism) {
+        let index = self.links.len();
+        let joint = &mechanism.joints[index];
+        let mut step = Step { graph, rotator: &mut self.rotator, joint, index };
+        let parent = match joint.parent {
+            Some(parent) => self.links[parent],
+            None => step.base(),
+        };
+        step.name_constants();
+        let motion = step.motion(&parent);
+        let above = joint.parent.map_or(&[][..], |parent| &self.movers[parent]);
+        let movers = step.movers(above, &motion);
+        names::motion(graph, index, &motion);
+        names::movers(graph, index, &movers);
+        self.links.push(motion);
+        self.movers.push(movers);
     }
 }
 
@@ -76,6 +78,25 @@ struct Step<'a> {
 }
 
 impl Step<'_> {
+    /// The lengths of the step by their Denavit-Hartenberg names where they have one.
+    fn name_constants(&mut self) {
+        let number = self.index + 1;
+        let right = self.joint.gamma.is_zero();
+        for (axis, &value) in self.joint.position.iter().enumerate() {
+            let name = match axis {
+                0 if right => format!("d{number}"),
+                _ if right => format!("r{number}"),
+                _ => format!("p{number}{}", names::AXES[axis]),
+            };
+            let constant = self.graph.constant(value.abs());
+            self.graph.name(constant, &name);
+        }
+        for value in self.joint.gravity.unwrap_or_default() {
+            let constant = self.graph.constant(value.abs());
+            self.graph.name(constant, "gravity");
+        }
+    }
+
     fn base(&mut self) -> Motion {
         let g = constant(self.graph, self.joint.gravity.unwrap_or_default());
         let none = zero(self.graph);

@@ -92,6 +92,7 @@ pub struct Graph {
     nodes: Vec<Node>,
     known: HashMap<Node, u32>,
     angles: Vec<AngleSum>,
+    names: HashMap<u32, String>,
     zero: Expr,
     one: Expr,
 }
@@ -110,6 +111,7 @@ impl Graph {
             nodes: Vec::new(),
             known: HashMap::new(),
             angles: Vec::new(),
+            names: HashMap::new(),
             zero: placeholder,
             one: placeholder,
         };
@@ -131,6 +133,22 @@ impl Graph {
     /// Number of distinct angles.
     pub fn angle_count(&self) -> usize {
         self.angles.len()
+    }
+
+    /// Says what a value is, for readers of emitted code; the first name stays. A negated value
+    /// gets the name with `neg_` before it, since the node is the positive one.
+    pub fn name(&mut self, x: Expr, name: &str) {
+        let leaf = matches!(self.nodes[x.node()], Node::Input(_) | Node::Sin(_) | Node::Cos(_));
+        if leaf || x.node == self.zero.node || x.node == self.one.node {
+            return;
+        }
+        let prefix = if x.negative { "neg_" } else { "" };
+        self.names.entry(x.node).or_insert_with(|| format!("{prefix}{name}"));
+    }
+
+    /// What the positive node of an expression was named.
+    pub fn name_of(&self, node: usize) -> Option<&str> {
+        self.names.get(&(node as u32)).map(String::as_str)
     }
 
     /// The constant 0.

@@ -1,0 +1,274 @@
+//! `idim describe`: the model of a robot, to be understood in one minute.
+
+use std::fmt::Write;
+use std::path::PathBuf;
+
+use idim::codegen::Robot;
+use idim::codegen::derive::ParameterKind;
+use idim::codegen::expr::Operations;
+use idim::codegen::mechanism::{Joint, JointKind};
+use serde::Serialize;
+
+use super::{Failure, failure, output, robot};
+
+/// Arguments of `idim describe`.
+#[derive(Debug, clap::Args)]
+pub struct Arguments {
+    /// Name of a built-in robot, or path of a .urdf or .toml.
+    robot: String,
+    /// Write the description as JSON; `-` for standard output.
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+    /// Print nothing but what was asked for as a file.
+    #[arg(long)]
+    quiet: bool,
+}
+
+/// Describes the robot.
+///
+/// # Errors
+/// [`Failure`] when the robot cannot be read or the file not be written.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let robot = robot::derived(&arguments.robot)?;
+    if let Some(path) = &arguments.json {
+        output::json(path, &Report::new(&robot))?;
+    }
+    if arguments.quiet || output::claims_stdout(arguments.json.as_deref()) {
+        return Ok(());
+    }
+    for warning in &robot.description.warnings {
+        eprintln!("{:?}", failure::report(warning));
+    }
+    output::print(&text(&robot))
+}
+
+/// The JSON of `describe`.
+#[derive(Debug, Serialize)]
+struct Report {
+    robot: String,
+    joints: Vec<JointReport>,
+    standard_parameters: usize,
+    rank_gap: f64,
+    base_parameters: Vec<ParameterReport>,
+    operations: OperationsReport,
+    snaps: Vec<SnapReport>,
+    warnings: Vec<String>,
+}
+
+#[derive(Debug, Serialize)]
+struct JointReport {
+    name: String,
+    kind: &'static str,
+    /// Antecedent, counted from 1; 0 is the base.
+    ant: usize,
+    gamma: f64,
+    alpha: f64,
+    theta: f64,
+    position: [f64; 3],
+    bodies: Vec<String>,
+}
+
+#[derive(Debug, Serialize)]
+struct ParameterReport {
+    name: String,
+    unit: String,
+    link: usize,
+    kind: &'static str,
+    relation: String,
+}
+
+#[derive(Debug, Serialize)]
+struct OperationsReport {
+    explicit: CountReport,
+    implicit: CountReport,
+    energy: CountReport,
+}
+
+#[derive(Debug, Serialize)]
+struct CountReport {
+    mul: usize,
+    add: usize,
+    trig: usize,
+}
+
+#[derive(Debug, Serialize)]
+struct SnapReport {
+    joint: String,
+    from: f64,
+    to: String,
+}
+
+impl Report {
+    fn new(robot: &Robot) -> Report {
+        let counts = robot.counts();
+        let snap = |snap: &idim::codegen::describe::Snap| SnapReport {
+            joint: snap.joint.clone(),
+            from: snap.from,
+            to: snap.to.clone(),
+        };
+        Report {
+            robot: robot.mechanism.name.clone(),
+            joints: robot.mechanism.joints.iter().map(JointReport::new).collect(),
+            standard_parameters: robot.base.standard,
+            rank_gap: robot.base.gap,
+            base_parameters: robot.base.parameters.iter().map(ParameterReport::new).collect(),
+            operations: OperationsReport {
+                explicit: counts.explicit.into(),
+                implicit: counts.implicit.into(),
+                energy: counts.energy.into(),
+            },
+            snaps: robot.mechanism.snaps.iter().map(snap).collect(),
+            warnings: robot.description.warnings.iter().map(ToString::to_string).collect(),
+        }
+    }
+}
+
+impl JointReport {
+    fn new(joint: &Joint) -> JointReport {
+        JointReport {
+            name: joint.name.clone(),
+            kind: kind(joint.kind),
+            ant: joint.parent.map_or(0, |parent| parent + 1),
+            gamma: joint.gamma.value(),
+            alpha: joint.alpha.value(),
+            theta: joint.theta.value(),
+            position: joint.position,
+            bodies: joint.bodies.iter().map(|body| body.name.clone()).collect(),
+        }
+    }
+}
+
+impl ParameterReport {
+    fn new(parameter: &idim::codegen::base::BaseParameter) -> ParameterReport {
+        ParameterReport {
+            name: parameter.name.clone(),
+            unit: parameter.unit.clone(),
+            link: parameter.link + 1,
+            kind: match parameter.kind {
+                ParameterKind::Inertial(_) => "inertial",
+                ParameterKind::Drive => "drive",
+                ParameterKind::Friction => "friction",
+                ParameterKind::Effect => "effect",
+            },
+            relation: parameter.relation_text(),
+        }
+    }
+}
+
+impl From<Operations> for CountReport {
+    fn from(count: Operations) -> CountReport {
+        CountReport { mul: count.mul, add: count.add, trig: count.trig }
+    }
+}
+
+fn kind(kind: JointKind) -> &'static str {
+    match kind {
+        JointKind::Revolute => "revolute",
+        JointKind::Prismatic => "prismatic",
+    }
+}
+
+/// The description for people.
+fn text(robot: &Robot) -> String {
+    let mut out = String::new();
+    let n = robot.mechanism.joints.len();
+    let np = robot.base.parameters.len();
+    let _ = writeln!(
+        out,
+        "{}: {n} joint{}, {np} base parameters of {} standard ones (rank gap {:.0e})\n",
+        robot.mechanism.name,
+        if n == 1 { "" } else { "s" },
+        robot.base.standard,
+        robot.base.gap
+    );
+    joints(&mut out, robot);
+    snaps(&mut out, robot);
+    parameters(&mut out, robot);
+    operations(&mut out, robot);
+    out
+}
+
+fn joints(out: &mut String, robot: &Robot) {
+    let width = robot.mechanism.joints.iter().map(|joint| joint.name.chars().count()).max();
+    let width = width.unwrap_or(0).max(5);
+    let _ = writeln!(
+        out,
+        "  j  {:<width$}  {:<9}  ant  {:>8} {:>8} {:>8}   origin in the antecedent's frame, m",
+        "joint", "kind", "gamma", "alpha", "theta"
+    );
+    for (index, joint) in robot.mechanism.joints.iter().enumerate() {
+        let [gamma, alpha, theta] = [joint.gamma, joint.alpha, joint.theta].map(angle);
+        let variable = match joint.kind {
+            JointKind::Revolute => format!("q{}", index + 1),
+            JointKind::Prismatic => String::new(),
+        };
+        let theta = match (theta.as_str(), variable.as_str()) {
+            (theta, "") => theta.to_owned(),
+            ("0", variable) => variable.to_owned(),
+            (theta, variable) => format!("{variable} + {theta}").replace("+ -", "- "),
+        };
+        let [x, y, z] = joint.position;
+        let _ = write!(
+            out,
+            "{:>3}  {:<width$}  {:<9}  {:>3}  {gamma:>8} {alpha:>8} {theta:>8}   ({x}, {y}, {z})",
+            index + 1,
+            joint.name,
+            kind(joint.kind),
+            joint.parent.map_or(0, |parent| parent + 1),
+        );
+        if joint.kind == JointKind::Prismatic {
+            let _ = write!(out, " + q{} along z", index + 1);
+        }
+        out.push('\n');
+    }
+}
+
+fn angle(angle: idim::codegen::expr::Angle) -> String {
+    match angle.right() {
+        Some(_) => angle.text(),
+        None => format!("{:.6}", angle.value()),
+    }
+}
+
+fn snaps(out: &mut String, robot: &Robot) {
+    for snap in &robot.mechanism.snaps {
+        let _ = writeln!(out, "  taken as exact: {}: {} is {}", snap.joint, snap.from, snap.to);
+    }
+}
+
+fn parameters(out: &mut String, robot: &Robot) {
+    let _ = writeln!(out, "\n  {:<8} {:<10} stands for", "column", "unit");
+    for parameter in &robot.base.parameters {
+        let head = format!("  {:<8} {:<10} ", parameter.name, parameter.unit);
+        let indent = " ".repeat(head.len());
+        out.push_str(&head);
+        let mut column = head.len();
+        for (index, word) in parameter.relation_text().split(' ').enumerate() {
+            // A relation breaks before a sign, never between a sign and its term.
+            if column + word.len() > 100 && (word == "+" || word == "-") {
+                out.push('\n');
+                out.push_str(&indent);
+                column = indent.len();
+            } else if index > 0 {
+                out.push(' ');
+                column += 1;
+            }
+            out.push_str(word);
+            column += word.len();
+        }
+        out.push('\n');
+    }
+}
+
+fn operations(out: &mut String, robot: &Robot) {
+    let counts = robot.counts();
+    let _ = writeln!(out, "\n  operations (inertial columns)      x      +  sin/cos");
+    for (name, count) in [
+        ("D   explicit", counts.explicit),
+        ("P+R implicit", counts.implicit),
+        ("h   energy", counts.energy),
+    ] {
+        let _ =
+            writeln!(out, "  {name:<30} {:>6} {:>6} {:>8}", count.mul, count.add, count.trig);
+    }
+}

@@ -1,0 +1,224 @@
+//! `idim identify`: parameters from measured logs, by the three models side by side.
+
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+
+use clap::ValueEnum;
+use idim::runtime::identify::{Options, identify, predict};
+use idim::runtime::log::{self, LogSpec, ReadOptions, Recording};
+use idim::runtime::model::IdentificationModel;
+use idim::runtime::observe::ModelKind;
+use idim::runtime::report::{Identification, terminal};
+use idim::runtime::settings::{Edges, Velocity, Weights};
+
+use super::progress::Spinner;
+use super::{Failure, output, robot};
+
+/// Arguments of `idim identify`.
+#[derive(Debug, clap::Args)]
+pub struct Arguments {
+    /// Name of a built-in robot, or path of a .urdf or .toml.
+    robot: String,
+    /// Logs to identify from: LOG, LOG@5..7.5 (seconds) or LOG@#635..3510 (rows).
+    #[arg(required = true, value_name = "LOG")]
+    logs: Vec<String>,
+    /// A log to validate on; may be given several times.
+    #[arg(long, value_name = "LOG")]
+    validate: Vec<String>,
+    /// Folder for the torques predicted along each validation log.
+    #[arg(long, value_name = "DIR")]
+    predictions: Option<PathBuf>,
+    #[command(flatten)]
+    choices: Choices,
+    /// Log companion, instead of the .toml beside each log.
+    #[arg(long, value_name = "FILE")]
+    map: Option<PathBuf>,
+    /// Write the result as JSON; `-` for standard output.
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+    /// Print nothing but what was asked for as a file.
+    #[arg(long)]
+    quiet: bool,
+}
+
+/// Filters, weights and models; what is not given comes from the robot or from the data.
+#[derive(Debug, Default, clap::Args)]
+pub struct Choices {
+    /// Models to identify.
+    #[arg(long, value_enum, value_delimiter = ',')]
+    models: Vec<Model>,
+    /// Cut-off of the prefilter of q, Hz.
+    #[arg(long, value_name = "HZ")]
+    fq: Option<f64>,
+    /// Decimation ratio.
+    #[arg(long, value_name = "N")]
+    nd: Option<usize>,
+    /// Order of the prefilter.
+    #[arg(long, value_name = "N")]
+    order: Option<usize>,
+    /// Cut off at either end: samples before decimation (scipy edges), or decimated rows (matlab).
+    #[arg(long, value_name = "N")]
+    trim: Option<usize>,
+    /// Samples cut off at the start and at the end before decimation, whatever the edges.
+    #[arg(long, value_name = "START,END", value_parser = border)]
+    border: Option<(usize, usize)>,
+    /// Edge rule of the filters.
+    #[arg(long, value_enum)]
+    edges: Option<EdgeRule>,
+    /// Weights of the equations.
+    #[arg(long, value_enum)]
+    weights: Option<Weighting>,
+    /// Joint velocity: differences of q, or the log's own.
+    #[arg(long, value_enum)]
+    velocity: Option<Source>,
+    /// Pass the torque through the prefilter too.
+    #[arg(long)]
+    prefilter_torque: bool,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Model {
+    Explicit,
+    Implicit,
+    Power,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum EdgeRule {
+    Matlab,
+    Scipy,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Weighting {
+    None,
+    Joint,
+    Robust,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Source {
+    Derived,
+    Measured,
+}
+
+fn border(text: &str) -> Result<(usize, usize), String> {
+    let parse = |part: &str| part.trim().parse::<usize>().ok();
+    text.split_once(',')
+        .and_then(|(start, end)| Some((parse(start)?, parse(end)?)))
+        .ok_or_else(|| "two numbers of samples, such as 49,0".to_owned())
+}
+
+impl Choices {
+    fn options(&self) -> Options {
+        let kind = |model: &Model| match model {
+            Model::Explicit => ModelKind::Explicit,
+            Model::Implicit => ModelKind::Implicit,
+            Model::Power => ModelKind::Power,
+        };
+        Options {
+            models: self.models.iter().map(kind).collect(),
+            fq_hz: self.fq,
+            order: self.order,
+            nd: self.nd,
+            trim: self.trim,
+            border: self.border,
+            edges: self.edges.map(|edges| match edges {
+                EdgeRule::Matlab => Edges::Matlab,
+                EdgeRule::Scipy => Edges::Scipy,
+            }),
+            weights: self.weights.map(|weights| match weights {
+                Weighting::None => Weights::None,
+                Weighting::Joint => Weights::Joint,
+                Weighting::Robust => Weights::Robust,
+            }),
+            velocity: self.velocity.map(|source| match source {
+                Source::Derived => Velocity::Derived,
+                Source::Measured => Velocity::Measured,
+            }),
+            prefilter_torque: self.prefilter_torque.then_some(true),
+        }
+    }
+}
+
+/// Identifies, validates, reports.
+///
+/// # Errors
+/// [`Failure`]: a robot or log that cannot be read, an identification that is not possible, a
+/// file that cannot be written.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    if arguments.predictions.is_some() && arguments.validate.is_empty() {
+        return Err(Failure::Usage {
+            message: "--predictions without --validate: there is no log to predict".into(),
+            help: "name the log with --validate LOG".into(),
+        });
+    }
+    let spinner = Spinner::new(arguments.quiet);
+    let model = robot::model(&arguments.robot)?;
+    let train = read(model.as_ref(), &arguments.logs, arguments.map.as_deref(), &spinner)?;
+    let validate = read(model.as_ref(), &arguments.validate, arguments.map.as_deref(), &spinner)?;
+    let options = arguments.choices.options();
+    let result = identify(model.as_ref(), &train, &validate, &options, &spinner)?;
+    if let Some(folder) = &arguments.predictions {
+        predictions(model.as_ref(), &validate, &result, folder)?;
+    }
+    spinner.finish();
+    if let Some(path) = &arguments.json {
+        output::json(path, &result)?;
+    }
+    if arguments.quiet || output::claims_stdout(arguments.json.as_deref()) {
+        return Ok(());
+    }
+    output::print(&terminal(&result))
+}
+
+fn read(
+    model: &dyn IdentificationModel,
+    logs: &[String],
+    map: Option<&Path>,
+    spinner: &Spinner,
+) -> Result<Vec<Recording>, Failure> {
+    let options = ReadOptions { require_torque: true, companion: map.map(Path::to_owned) };
+    let mut recordings = Vec::with_capacity(logs.len());
+    for name in logs {
+        spinner.say(&format!("reading {name}"));
+        let spec: LogSpec = name.parse()?;
+        let drives = &model.settings().drives;
+        let (recording, _) = log::read(&spec, model.joints(), drives, &options)?;
+        recordings.push(recording);
+    }
+    Ok(recordings)
+}
+
+/// `LOGSTEM_MODEL.csv.gz` for each validation log and model: t, tau1.. on the rows of the log.
+fn predictions(
+    model: &dyn IdentificationModel,
+    logs: &[Recording],
+    result: &Identification,
+    folder: &Path,
+) -> Result<(), Failure> {
+    std::fs::create_dir_all(folder)
+        .map_err(|source| Failure::Write { path: folder.to_owned(), source })?;
+    let mut seen: HashMap<&str, usize> = HashMap::new();
+    for recording in logs {
+        let count = seen.entry(&recording.stem).or_default();
+        *count += 1;
+        // Two parts of one file must not overwrite each other.
+        let stem = match *count {
+            1 => recording.stem.clone(),
+            count => format!("{}-{count}", recording.stem),
+        };
+        for found in &result.models {
+            let torque =
+                predict(model, recording, &found.solution(), &result.filter, found.name)?;
+            let rows: Vec<Vec<f64>> =
+                torque.iter().map(|series| log::onto_stamps(recording, series)).collect();
+            let names: Vec<String> = (1..=rows.len()).map(|joint| format!("tau{joint}")).collect();
+            let mut columns: Vec<(&str, &[f64])> = vec![("t", &recording.stamps)];
+            columns.extend(names.iter().map(String::as_str).zip(rows.iter().map(Vec::as_slice)));
+            let file = format!("{stem}_{}.csv.gz", found.name.name());
+            log::write(&folder.join(file), &columns)?;
+        }
+    }
+    Ok(())
+}

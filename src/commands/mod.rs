@@ -1,0 +1,53 @@
+//! What the command line offers, and how a command ends.
+//!
+//! Exit status: 0 done, 1 could not do it (message on standard error), 2 bad usage.
+
+mod demo;
+mod describe;
+mod failure;
+mod generate;
+mod identify;
+mod output;
+mod progress;
+mod robot;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+pub use failure::Failure;
+
+/// Identify robot dynamics: from a description and a measured log to base parameters with error
+/// bars, by three filtered models side by side.
+#[derive(Debug, Parser)]
+#[command(name = "idim", version, propagate_version = true)]
+pub struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// The paper's SCARA, simulated and identified by three models; no arguments, no files.
+    Demo(demo::Arguments),
+    /// Mechanism, base parameters with their relations, operation counts of a robot.
+    Describe(describe::Arguments),
+    /// The specialised code of a robot.
+    Generate(generate::Arguments),
+    /// Parameters of a robot from measured logs, with statistics and validation.
+    Identify(identify::Arguments),
+}
+
+/// Runs a command and shows what went wrong.
+pub fn run(arguments: Arguments) -> ExitCode {
+    let result = match arguments.command {
+        Command::Demo(arguments) => demo::run(&arguments),
+        Command::Describe(arguments) => describe::run(&arguments),
+        Command::Generate(arguments) => generate::run(&arguments),
+        Command::Identify(arguments) => identify::run(&arguments),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => failure.show(),
+    }
+}

@@ -1,0 +1,65 @@
+//! Where results go: standard output that may be closed, files that are written whole.
+
+use std::io::Write;
+use std::path::Path;
+
+use serde::Serialize;
+
+use super::Failure;
+
+/// Prints a text; a reader that went away (`| head`) is no error.
+///
+/// # Errors
+/// [`Failure::Write`] when standard output cannot be written for another reason.
+pub fn print(text: &str) -> Result<(), Failure> {
+    let mut out = std::io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
+            Err(Failure::Write { path: "standard output".into(), source: error })
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Writes a file by way of a temporary one beside it, so that it is there whole or not at all.
+///
+/// # Errors
+/// [`Failure::Write`] when the folder or the file cannot be written.
+pub fn write_whole(path: &Path, text: &str) -> Result<(), Failure> {
+    let failed = |source: std::io::Error| Failure::Write { path: path.to_owned(), source };
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    let mut file = tempfile::NamedTempFile::new_in(folder.unwrap_or(Path::new(".")))
+        .map_err(failed)?;
+    file.write_all(text.as_bytes()).map_err(failed)?;
+    readable_by_all(file.as_file()).map_err(failed)?;
+    file.persist(path).map_err(|error| failed(error.error))?;
+    Ok(())
+}
+
+/// Temporary files are private; results are as readable as any other file.
+#[cfg(unix)]
+fn readable_by_all(file: &std::fs::File) -> std::io::Result<()> {
+    use std::os::unix::fs::PermissionsExt;
+    file.set_permissions(std::fs::Permissions::from_mode(0o644))
+}
+
+#[cfg(not(unix))]
+fn readable_by_all(_: &std::fs::File) -> std::io::Result<()> {
+    Ok(())
+}
+
+/// A result as JSON to a file, or to standard output for `-`.
+///
+/// # Errors
+/// [`Failure::Write`].
+pub fn json(path: &Path, value: &impl Serialize) -> Result<(), Failure> {
+    let mut text = serde_json::to_string_pretty(value)
+        .map_err(|error| Failure::Defect(format!("a result is not JSON: {error}")))?;
+    text.push('\n');
+    if path == Path::new("-") { print(&text) } else { write_whole(path, &text) }
+}
+
+/// Whether `--json -` claims standard output for itself.
+pub fn claims_stdout(json: Option<&Path>) -> bool {
+    json == Some(Path::new("-"))
+}
