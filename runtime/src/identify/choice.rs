@@ -28,6 +28,9 @@ const ROWS_PER_PARAMETER: usize = 10;
 /// Periods of the prefilter's cut-off that are cut off at either end.
 const PERIODS: f64 = 2.0;
 
+/// Decimated rows that the parallel filter's transient takes: its response is then below 1e-6.
+const FEWEST_ROWS: usize = 10;
+
 /// The filters, and which of them were chosen here.
 pub(super) struct Chosen {
     pub fq_hz: f64,
@@ -116,15 +119,15 @@ fn ratio(dyn_hz: f64, rate_hz: f64, logs: &[Recording], parameters: usize) -> us
     (by_band.floor().min(1e6) as usize).min(by_rows).max(1)
 }
 
-/// What to cut off at either end: the prefilter's transient, in samples, or in decimated rows and
-/// then at least two, for the transient of the decimation.
+/// What to cut off at either end: the prefilter's transient, in samples; or in decimated rows,
+/// and then the transient of the parallel filter too.
 fn edge(fq_hz: f64, rate_hz: f64, nd: usize, edges: Edges) -> usize {
     let samples = (PERIODS * rate_hz / fq_hz.max(f64::MIN_POSITIVE))
         .ceil()
         .clamp(0.0, 1e9) as usize;
     match edges {
         Edges::Scipy => samples,
-        Edges::Matlab => samples.div_ceil(nd.max(1)).max(2),
+        Edges::Matlab => samples.div_ceil(nd.max(1)).max(FEWEST_ROWS),
     }
 }
 

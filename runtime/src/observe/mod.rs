@@ -38,7 +38,7 @@ pub enum ModelKind {
 pub enum Treatment {
     /// The output as it is.
     Value,
-    /// The derivative of the low-passed output.
+    /// The time derivative of the output.
     Rate,
 }
 

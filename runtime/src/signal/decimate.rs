@@ -2,7 +2,7 @@
 
 use super::SignalError;
 use super::design::chebyshev1;
-use super::difference::difference_at;
+use super::difference::differentiate;
 use super::planar::{LANES, Signals};
 use super::zero_phase::ZeroPhase;
 use crate::settings::Edges;
@@ -78,11 +78,17 @@ impl Decimator {
         signals: &S,
         kept: &[usize],
     ) -> Result<Vec<Vec<f64>>, SignalError> {
-        self.read(signals, kept, |filtered, lane, i| filtered[i][lane])
+        self.read(signals, kept, |_| (), |_| ())
     }
 
-    /// The derivatives of the low-passed signals at the samples `kept`, per second: the
-    /// difference is taken at the full rate, after the low-pass (Gautier 1996, eqs. 19 and 23).
+    /// The low-passed derivatives of the signals at the samples `kept`, per second; the
+    /// difference is taken at the full rate.
+    ///
+    /// Difference and low-pass commute (Gautier 1996, eq. 19), except near an edge, where the
+    /// signal is extended. With [`Edges::Matlab`] the low-pass comes first, as in the paper, and
+    /// the rows near the edge are to be trimmed. With [`Edges::Scipy`], where nothing is trimmed
+    /// after the low-pass, the difference comes first: then a derivative is extended in the way
+    /// torque is, and the equations hold up to the last row.
     ///
     /// # Errors
     /// [`SignalError::TooShort`].
@@ -91,32 +97,38 @@ impl Decimator {
         signals: &S,
         kept: &[usize],
     ) -> Result<Vec<Vec<f64>>, SignalError> {
-        self.read(signals, kept, |filtered, lane, i| {
-            difference_at(|k| filtered[k][lane], i, filtered.len(), self.rate_hz)
-        })
+        let difference = |group: &mut [[f64; LANES]]| differentiate(group, self.rate_hz);
+        match self.edges {
+            Edges::Matlab => self.read(signals, kept, |_| (), difference),
+            Edges::Scipy => self.read(signals, kept, difference, |_| ()),
+        }
     }
 
+    /// Passes groups of signals through `before`, the low-pass and `after`, and keeps samples.
     fn read<S: Signals + ?Sized>(
         &self,
         signals: &S,
         kept: &[usize],
-        value: impl Fn(&[[f64; LANES]], usize, usize) -> f64 + Sync,
+        before: impl Fn(&mut [[f64; LANES]]) + Sync,
+        after: impl Fn(&mut [[f64; LANES]]) + Sync,
     ) -> Result<Vec<Vec<f64>>, SignalError> {
-        let reader = |group: &[[f64; LANES]], width: usize| {
-            let lane = |lane| kept.iter().map(|i| value(group, lane, *i)).collect();
+        let read = |group: &mut [[f64; LANES]], width: usize| {
+            after(group);
+            let lane = |lane| kept.iter().map(|i| group[*i][lane]).collect();
             (0..width).map(lane).collect()
         };
         match &self.filter {
-            Some(filter) => filter.read(signals, reader),
-            None => Ok(unfiltered(signals, reader)),
+            Some(filter) => filter.groups(signals, before, read),
+            None => Ok(unfiltered(signals, before, read)),
         }
     }
 }
 
-/// Hands all signals to `reader` as they are.
+/// Hands all signals to `read` as they are after `prepare`.
 fn unfiltered<S: Signals + ?Sized, T>(
     signals: &S,
-    reader: impl Fn(&[[f64; LANES]], usize) -> Vec<T>,
+    prepare: impl Fn(&mut [[f64; LANES]]),
+    read: impl Fn(&mut [[f64; LANES]], usize) -> Vec<T>,
 ) -> Vec<T> {
     let mut group = vec![[0.0; LANES]; signals.samples()];
     let mut all = Vec::with_capacity(signals.count());
@@ -125,7 +137,8 @@ fn unfiltered<S: Signals + ?Sized, T>(
         for lane in 0..width {
             signals.copy_to_lane(first + lane, lane, &mut group);
         }
-        all.extend(reader(&group, width));
+        prepare(&mut group);
+        all.extend(read(&mut group, width));
     }
     all
 }

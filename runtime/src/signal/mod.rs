@@ -19,7 +19,7 @@ pub use bandwidth::bandwidth;
 pub use cascade::{Cascade, Section};
 pub use decimate::Decimator;
 pub use design::{butterworth, chebyshev1};
-pub use difference::{central_difference, difference_at};
+pub use difference::central_difference;
 pub use planar::{BLOCK, LANES, Planar, Signals};
 pub use zero_phase::ZeroPhase;
 

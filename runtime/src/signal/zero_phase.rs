@@ -53,23 +53,31 @@ impl ZeroPhase {
     /// # Errors
     /// [`SignalError::TooShort`] if there are fewer than [`Self::fewest_samples`].
     pub fn filter(&self, series: &[Vec<f64>]) -> Result<Vec<Vec<f64>>, SignalError> {
-        self.read(series, |group, width| {
+        let read = |group: &mut [[f64; LANES]], width: usize| {
             (0..width)
                 .map(|lane| group.iter().map(|sample| sample[lane]).collect())
                 .collect()
-        })
+        };
+        self.groups(series, |_| (), read)
     }
 
-    /// Filters all signals, [`LANES`] side by side, and hands each group to `reader` with the
-    /// number of lanes in use. What `reader` returns for the groups is chained in their order.
+    /// Filters all signals, [`LANES`] side by side. Each group passes through `prepare` before
+    /// the filter and goes to `read` after it, with the number of lanes in use; what `read`
+    /// returns for the groups is chained in their order.
     ///
     /// # Errors
     /// [`SignalError::TooShort`] if there are fewer than [`Self::fewest_samples`].
-    pub fn read<S, T, F>(&self, signals: &S, reader: F) -> Result<Vec<T>, SignalError>
+    pub fn groups<S, T, P, R>(
+        &self,
+        signals: &S,
+        prepare: P,
+        read: R,
+    ) -> Result<Vec<T>, SignalError>
     where
         S: Signals + ?Sized,
         T: Send,
-        F: Fn(&[[f64; LANES]], usize) -> Vec<T> + Sync,
+        P: Fn(&mut [[f64; LANES]]) + Sync,
+        R: Fn(&mut [[f64; LANES]], usize) -> Vec<T> + Sync,
     {
         let has = signals.samples();
         if has < self.fewest_samples() && signals.count() > 0 {
@@ -78,18 +86,19 @@ impl ZeroPhase {
                 has,
             });
         }
+        let inner = self.extension..self.extension + has;
         let groups: Vec<Vec<T>> = (0..signals.count().div_ceil(LANES))
             .into_par_iter()
             .map(|group| {
                 let first = group * LANES;
                 let width = LANES.min(signals.count() - first);
                 let mut samples = vec![[0.0; LANES]; has + 2 * self.extension];
-                let inner = self.extension..self.extension + has;
                 for lane in 0..width {
                     signals.copy_to_lane(first + lane, lane, &mut samples[inner.clone()]);
                 }
+                prepare(&mut samples[inner.clone()]);
                 self.run(&mut samples);
-                reader(&samples[inner], width)
+                read(&mut samples[inner.clone()], width)
             })
             .collect();
         Ok(groups.into_iter().flatten().collect())
