@@ -70,8 +70,8 @@ mod tests {
     #[test]
     fn snap_close_to_a_multiple_gives_the_exact_multiple() {
         assert_eq!(snap(1.57), (FRAC_PI_2, Some(1)));
-        assert_eq!(snap(-1.570796), (-FRAC_PI_2, Some(-1)));
-        assert_eq!(snap(3.1416), (PI, Some(2)));
+        assert_eq!(snap(-1.5705), (-FRAC_PI_2, Some(-1)));
+        assert_eq!(snap(3.1412), (PI, Some(2)));
         assert_eq!(snap(-4e-4), (0.0, Some(0)));
         assert!(snap(-4e-4).0.is_sign_positive());
     }

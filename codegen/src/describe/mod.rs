@@ -11,6 +11,8 @@ pub mod diagnostic;
 mod expression;
 mod findings;
 pub mod identifier;
+#[cfg(test)]
+mod never_panics;
 mod source;
 mod suggest;
 mod toml;

@@ -166,18 +166,11 @@ fn names(
         return Some(names);
     }
     let wanted = match kind.arity() {
-        1 => "joint = \"NAME\"".to_owned(),
-        n => format!("joints = [...] with {n} different names"),
+        1 => "`joint = \"NAME\"`".to_owned(),
+        n => format!("`joints = [...]` with {n} different names"),
     };
-    let message = format!(
-        "effect `{}` acts on {} joint(s), not these",
-        kind.name(),
-        kind.arity()
-    );
-    to.error(
-        offset,
-        finding(code::EFFECT_ARITY, message).help(format!("write {wanted}")),
-    );
+    let message = format!("effect `{}` needs {wanted}", kind.name());
+    to.error(offset, finding(code::EFFECT_ARITY, message));
     None
 }
 
@@ -208,6 +201,10 @@ fn moving<'j>(
 
 /// Reports an effect that is asked for twice on the same joints: its columns would be equal.
 pub(super) fn check_distinct(effects: &[EffectSpec], to: &mut Findings) {
+    // Of two joints of one name each has the effects of both: that is said already.
+    if to.errors_of_group(code::NAME_REPEATED) > 0 {
+        return;
+    }
     let mut first: HashMap<(EffectKind, &[String]), Span> = HashMap::new();
     for EffectSpec {
         kind, joints, span, ..

@@ -28,9 +28,6 @@ use rest::Rest;
 use sha2::{Digest, Sha256};
 use table::Table;
 
-/// Syntax errors shown at once: later ones are mostly consequences.
-const MAX_SYNTAX_ERRORS: usize = 3;
-
 /// Largest TOML that is read, bytes.
 const MAX_BYTES: usize = 4 << 20;
 
@@ -43,12 +40,11 @@ pub(super) fn read(text: &str, file: &str, load: Load) -> Result<Description, Ve
         return Err(vec![found.on_file(file)]);
     }
     let (document, mistakes) = DeTable::parse_recoverable(text);
-    for mistake in mistakes.iter().take(MAX_SYNTAX_ERRORS) {
+    // Later ones are mostly consequences.
+    if let Some(mistake) = mistakes.first() {
         let offset = mistake.span().map_or(0, |span| span.start);
         let first_line = mistake.message().lines().next().unwrap_or("not TOML");
         findings.error(offset, finding(code::TOML_SYNTAX, first_line));
-    }
-    if findings.errors() > 0 {
         return Err(findings.decide().err().unwrap_or_default());
     }
     let mut table = Table::new(document.get_ref(), "", 0);
@@ -123,7 +119,10 @@ fn describe(
         None => frame::from_rows(&mut table, &lengths, &mut to),
     };
     let joints = check::joints(&frame.geometry);
-    check::something_moves(&joints, &mut to);
+    // Where joints could not be read, their absence is no news.
+    if !joints.is_empty() || to.errors() == 0 {
+        check::something_moves(&joints, &mut to);
+    }
     let rest = Rest::read(&mut table, &joints, &frame.extras, &lengths, &mut to);
     table.finish(&mut to);
     let mut warnings = to.decide()?;

@@ -165,7 +165,7 @@ fn gains(common: Option<(Vec<f64>, usize)>, extras: &[&Extras], to: &mut Finding
         (None, Some((_, offset))) => (own.iter().map(|(gain, _)| *gain).collect(), *offset),
     };
     if gains.len() != extras.len() {
-        let message = format!("{} gains for {} moving joints", gains.len(), extras.len());
+        let message = format!("gains: {} for {} moving joints", gains.len(), extras.len());
         let help = "give one gain per moving joint, 1.0 where the log is in N m already";
         to.error(offset, finding(code::JOINT_COUNT, message).help(help));
     }

@@ -179,8 +179,8 @@ nd = 0
          give `L2` a value in [lengths]",
         "robot.toml:8:9: error [IDIM054]: `edges` of [identify] cannot be `scipi`\n  help: did you \
          mean `scipy`?",
-        "robot.toml:9:6: error [IDIM045]: `nd` of [identify] must be a whole number from 1 to \
-         4294967295, not 0",
+        "robot.toml:9:6: error [IDIM045]: `nd` of [identify] must be a whole number, 1 or \
+         more, not 0",
     ];
     assert_eq!(found, expected);
 }

@@ -2,7 +2,7 @@
 
 use super::super::code;
 use super::super::description::Quantity;
-use super::super::expression;
+use super::super::expression::evaluate;
 use super::super::findings::{Findings, finding};
 use super::super::suggest;
 use super::table::{Value, wrong_type};
@@ -51,7 +51,7 @@ fn evaluated(
     lengths: &[(String, f64)],
     to: &mut Findings,
 ) -> Option<f64> {
-    match expression::evaluate(text, lengths) {
+    match evaluate(text, lengths) {
         Ok(number) => Some(number),
         Err(mistake) => {
             // Exact for a plain quoted string; an escape inside shifts it by a few columns.
@@ -68,7 +68,15 @@ fn evaluated(
 
 /// A finite number.
 pub(super) fn number(value: Value<'_>, what: &str, to: &mut Findings) -> Option<f64> {
-    quantity(value, what, &[], to).map(|found| found.value)
+    match value.get_ref() {
+        // `pi/2` is a number, but lengths have their place in the geometry only.
+        DeValue::String(text) if evaluate(text, &[]).is_err() => {
+            let message = format!("{what} must be a number, not `{text}`");
+            to.error(value.span().start, finding(code::VALUE_TYPE, message));
+            None
+        }
+        _ => quantity(value, what, &[], to).map(|found| found.value),
+    }
 }
 
 /// A number within a closed range.
@@ -109,7 +117,11 @@ pub(super) fn count_within(
     if let Some(found) = found.filter(|found| (low..=high).contains(found)) {
         return Some(found);
     }
-    let message = format!("{what} must be a whole number from {low} to {high}, not {digits}");
+    let wanted = match high {
+        0..=999 => format!("a whole number from {low} to {high}"),
+        _ => format!("a whole number, {low} or more"),
+    };
+    let message = format!("{what} must be {wanted}, not {digits}");
     to.error(value.span().start, finding(code::NUMBER_RANGE, message));
     None
 }

@@ -6,15 +6,29 @@
 /// XML text that grows.
 pub(super) struct Digest {
     text: String,
+    quaternions: bool,
 }
 
 impl Digest {
-    /// An open `<robot>`; urdf-rs gives quaternions a meaning from version 1.1 on, and rules of
-    /// its own about limits from 1.2 on, which are checked here with their places instead.
-    pub(super) fn new() -> Self {
+    /// An open `<robot>` of a version of URDF; 1.0 if none is stated.
+    ///
+    /// urdf-rs gives quaternions a meaning from version 1.1 on, and has rules of its own about
+    /// limits from 1.2 on, which are checked with their places elsewhere.
+    pub(super) fn new(version: Option<&str>) -> Self {
+        let number = |text: &str| text.trim().parse::<u32>().ok();
+        let parts = version.and_then(|text| text.split_once('.'));
+        let parts = parts.and_then(|(major, minor)| Some((number(major)?, number(minor)?)));
+        let quaternions = parts.is_some_and(|version| version >= (1, 1));
+        let version = if quaternions { "1.1" } else { "1.0" };
         Digest {
-            text: "<robot name=\"r\" version=\"1.1\">".to_owned(),
+            text: format!("<robot name=\"r\" version=\"{version}\">"),
+            quaternions,
         }
+    }
+
+    /// Whether an orientation may be a quaternion.
+    pub(super) fn knows_quaternions(&self) -> bool {
+        self.quaternions
     }
 
     /// An element that contains others.

@@ -5,6 +5,29 @@ use super::super::findings::{Findings, finding};
 use super::super::suggest;
 use roxmltree::Node;
 
+/// Attributes that mean something somewhere, and so are no misspelling of another.
+const ATTRIBUTES: [&str; 19] = [
+    "name",
+    "type",
+    "link",
+    "joint",
+    "xyz",
+    "rpy",
+    "quat_xyzw",
+    "value",
+    "ixx",
+    "ixy",
+    "ixz",
+    "iyy",
+    "iyz",
+    "izz",
+    "lower",
+    "upper",
+    "effort",
+    "velocity",
+    "version",
+];
+
 /// An element.
 #[derive(Clone, Copy)]
 pub(super) struct Element<'a> {
@@ -93,10 +116,9 @@ impl<'a> Element<'a> {
 
     /// Help for a missing attribute: the one that was probably meant.
     fn similar(self, name: &str) -> String {
-        let near = self
-            .node
-            .attributes()
-            .find(|one| one.name() != name && suggest::nearest(one.name(), [name]).is_some());
+        let near = self.node.attributes().find(|one| {
+            !ATTRIBUTES.contains(&one.name()) && suggest::nearest(one.name(), [name]).is_some()
+        });
         match near {
             Some(near) => format!("`{}` is there: did you mean `{name}`?", near.name()),
             None => format!("write <{} {name}=\"...\">", self.tag()),

@@ -22,7 +22,7 @@ pub(super) fn check(
     let mass = inertial.mass;
     if mass < 0.0 || (mass == 0.0 && largest > 0.0) {
         let message = format!("link `{link}` has mass {mass}");
-        let help = "a link without mass needs no <inertial>";
+        let help = "masses are positive; a link without mass needs no <inertial>";
         to.warn(
             places.0,
             finding(code::MASS_NOT_POSITIVE, message).help(help),

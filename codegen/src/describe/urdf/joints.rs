@@ -10,6 +10,7 @@ use super::digest::Digest;
 use super::element::Element;
 use super::number;
 use super::origin;
+use std::collections::HashSet;
 
 const CHILDREN: [&str; 9] = [
     "parent",
@@ -48,6 +49,8 @@ pub(super) struct JointText {
     pub(super) limit: Option<usize>,
     /// Which of lower, upper, effort, velocity are stated.
     pub(super) stated: [bool; 4],
+    /// The joint that it mimics, if it does.
+    pub(super) mimic: Option<Named>,
 }
 
 /// Reads a joint into the digest.
@@ -70,21 +73,23 @@ pub(super) fn read(joint: Element<'_>, digest: &mut Digest, to: &mut Findings) -
     let axis = axis(joint, owner, kind, digest, to);
     let (limit, stated) = limit(joint, owner, digest, to);
     dynamics(joint, owner, to);
-    mimic(joint, owner, to);
     digest.close("joint");
     let motion = match kind {
         "revolute" | "continuous" => Motion::Revolute,
         "prismatic" => Motion::Prismatic,
         _ => Motion::Fixed,
     };
+    let continuous = kind == "continuous";
+    let mimic = mimic(joint, owner, to);
     JointText {
         edge,
         motion,
-        continuous: kind == "continuous",
+        continuous,
         origin,
         axis,
         limit,
         stated,
+        mimic,
     }
 }
 
@@ -104,7 +109,10 @@ fn misplaced(joint: Element<'_>, owner: &str, to: &mut Findings) {
 
 /// The type, or `fixed` where it is none that can be modelled.
 fn kind<'a>(joint: Element<'a>, owner: &str, to: &mut Findings) -> &'a str {
-    let Some(found) = joint.need("type", owner, to) else {
+    let Some(found) = joint.attribute("type") else {
+        let help = suggest::help("", &TYPES);
+        let found = finding(code::ATTRIBUTE_MISSING, format!("{owner} has no type")).help(help);
+        to.error(joint.offset(), found);
         return "fixed";
     };
     match found.text {
@@ -218,20 +226,48 @@ fn dynamics(joint: Element<'_>, owner: &str, to: &mut Findings) {
     }
 }
 
-fn mimic(joint: Element<'_>, owner: &str, to: &mut Findings) {
-    let Some(mimic) = joint.child("mimic", owner, to) else {
-        return;
-    };
-    let Some(followed) = mimic.need("joint", owner, to) else {
-        return;
-    };
-    let message = format!(
-        "{owner} mimics `{}`, which is not yet supported",
-        followed.text
-    );
-    let help = "make it fixed, or give it a drive of its own";
-    to.error(
-        mimic.offset(),
-        finding(code::JOINT_UNSUPPORTED, message).help(help),
-    );
+fn mimic(joint: Element<'_>, owner: &str, to: &mut Findings) -> Option<Named> {
+    let mimic = joint.child("mimic", owner, to)?;
+    let followed = mimic.need("joint", owner, to)?;
+    Some(Named {
+        name: followed.text.trim().to_owned(),
+        span: to.span(followed.offset),
+    })
+}
+
+/// Reports joints that follow others: there are no constraints between joints yet.
+pub(super) fn check_mimic(joints: &[JointText], to: &mut Findings) {
+    let names: HashSet<&str> = joints
+        .iter()
+        .map(|joint| joint.edge.named.name.as_str())
+        .collect();
+    for joint in joints {
+        let Some(followed) = &joint.mimic else {
+            continue;
+        };
+        let (name, other) = (&joint.edge.named.name, &followed.name);
+        let (why, help) = if name == other {
+            (
+                "itself".to_owned(),
+                "name the joint that it follows".to_owned(),
+            )
+        } else if names.contains(other.as_str()) {
+            let help = "make it fixed, or give it a drive of its own";
+            (
+                format!("`{other}`, which is not yet supported"),
+                help.to_owned(),
+            )
+        } else {
+            let known = joints.iter().map(|joint| joint.edge.named.name.as_str());
+            (
+                format!("`{other}`, which is no joint"),
+                to.suggest(other, known),
+            )
+        };
+        let message = format!("joint `{name}` mimics {why}");
+        to.error_at(
+            followed.span,
+            finding(code::JOINT_UNSUPPORTED, message).help(help),
+        );
+    }
 }

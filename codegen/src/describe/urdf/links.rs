@@ -22,11 +22,11 @@ pub(super) struct LinkText {
 pub(super) fn read(link: Element<'_>, digest: &mut Digest, to: &mut Findings) -> LinkText {
     let name = link.name(to).unwrap_or_default();
     let owner = format!("link `{name}`");
-    misplaced(link, &owner, to);
+    let misplaced = misplaced(link, &owner, to);
     link.check_children(&["inertial", "visual", "collision"], &owner, to);
     digest.open("link", &[("name", name)]);
     let inertial = link.child("inertial", &owner, to);
-    let places = inertial.map(|inertial| read_inertial(inertial, &owner, digest, to));
+    let places = inertial.map(|inertial| read_inertial(inertial, &owner, misplaced, digest, to));
     digest.close("link");
     LinkText {
         named: Named {
@@ -37,8 +37,9 @@ pub(super) fn read(link: Element<'_>, digest: &mut Digest, to: &mut Findings) ->
     }
 }
 
-/// Reports what stands in a link and is overlooked there.
-fn misplaced(link: Element<'_>, owner: &str, to: &mut Findings) {
+/// Reports what stands in a link and is overlooked there; tells whether there is such a thing.
+fn misplaced(link: Element<'_>, owner: &str, to: &mut Findings) -> bool {
+    let mut some = false;
     for child in link.children() {
         let help = match child.tag() {
             "mass" | "inertia" => "it belongs into <inertial>",
@@ -50,13 +51,17 @@ fn misplaced(link: Element<'_>, owner: &str, to: &mut Findings) {
             child.offset(),
             finding(code::ELEMENT_MISPLACED, message).help(help),
         );
+        some = true;
     }
+    some
 }
 
-/// Reads an `<inertial>`; gives the places of mass and inertia.
+/// Reads an `<inertial>`; gives the places of mass and inertia. What is `misplaced` is not missing
+/// as well.
 fn read_inertial(
     inertial: Element<'_>,
     owner: &str,
+    misplaced: bool,
     digest: &mut Digest,
     to: &mut Findings,
 ) -> (usize, usize) {
@@ -64,11 +69,15 @@ fn read_inertial(
     inertial.check_children(&["origin", "mass", "inertia"], owner, to);
     digest.open("inertial", &[]);
     origin::read(inertial, owner, digest, to);
-    let mass = inertial.need_child("mass", owner, to);
+    let need = |tag, to: &mut Findings| match misplaced {
+        true => inertial.child(tag, owner, to),
+        false => inertial.need_child(tag, owner, to),
+    };
+    let mass = need("mass", to);
     let value = mass.and_then(|mass| mass.need("value", owner, to));
     let text = value.and_then(|value| number::checked(value, &format!("mass in {owner}"), 1, to));
     digest.empty("mass", &[("value", text.unwrap_or("1"))]);
-    let inertia = inertial.need_child("inertia", owner, to);
+    let inertia = need("inertia", to);
     let components = inertia.map(|inertia| read_inertia(inertia, owner, to));
     digest.empty(
         "inertia",

@@ -18,7 +18,10 @@ pub(super) fn check(tree: &UrdfTree, to: &mut Findings) {
     }
     let mut heavy = vec![false; tree.links.len()];
     for (link, &body) in tree.links.iter().zip(&body) {
-        heavy[body] |= link.inertial.is_some_and(|inertial| inertial.mass != 0.0);
+        // A mass of zero beside an inertia has been warned of already.
+        heavy[body] |= link.inertial.is_some_and(|inertial| {
+            inertial.mass != 0.0 || inertial.inertia.iter().any(|part| *part != 0.0)
+        });
     }
     let light: Vec<usize> = (0..tree.links.len())
         .filter(|&link| moved[link] && !heavy[link])

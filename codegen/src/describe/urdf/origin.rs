@@ -25,14 +25,21 @@ pub(super) fn read(
             attributes.push((name, text));
         }
     }
-    if let (Some(_), Some(quaternion)) = (origin.attribute("rpy"), origin.attribute("quat_xyzw")) {
-        let message = format!("<origin> in {owner} has both rpy and quat_xyzw");
-        let help = "keep one of the two orientations";
-        to.error(
-            quaternion.offset,
-            finding(code::KEYS_EXCLUDE, message).help(help),
-        );
-        attributes.retain(|(name, _)| *name != "quat_xyzw");
+    if let Some(quaternion) = origin.attribute("quat_xyzw") {
+        let refused = if origin.attribute("rpy").is_some() {
+            let message = format!("<origin> in {owner} has both rpy and quat_xyzw");
+            Some(finding(code::KEYS_EXCLUDE, message).help("keep one of the two orientations"))
+        } else if !digest.knows_quaternions() {
+            let message = format!("quat_xyzw of <origin> in {owner} means nothing in URDF 1.0");
+            let help = "write <robot version=\"1.1\">, or rpy";
+            Some(finding(code::ATTRIBUTE_UNKNOWN, message).help(help))
+        } else {
+            None
+        };
+        if let Some(found) = refused {
+            to.error(quaternion.offset, found);
+            attributes.retain(|(name, _)| *name != "quat_xyzw");
+        }
     }
     digest.empty("origin", &attributes);
     Some(origin.offset())

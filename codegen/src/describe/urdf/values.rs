@@ -117,7 +117,7 @@ pub(super) fn axis(
     let unit = scaled.map(|part| part / length);
     if (length * largest - 1.0).abs() > UNIT_TOLERANCE {
         let message = format!(
-            "the axis of joint `{name}` has length {:.4}",
+            "the axis of joint `{name}` has length {:.3e}",
             length * largest
         );
         to.warn(

@@ -38,7 +38,7 @@ impl Texts {
             }
         }
         root.check_children(&["link", "joint", "gazebo", "material"], "<robot>", to);
-        let mut digest = Digest::new();
+        let mut digest = Digest::new(root.attribute("version").map(|version| version.text));
         let (mut links, mut joints, mut meshes) = (Vec::new(), Vec::new(), (0, 0));
         for child in root.children() {
             match child.tag() {
@@ -54,6 +54,7 @@ impl Texts {
                 _ => {}
             }
         }
+        joints::check_mimic(&joints, to);
         if meshes.0 > 0 {
             let message = format!("{} mesh files are not read", meshes.0);
             let help = "the model needs masses and inertias, not shapes";
