@@ -4,6 +4,7 @@
 use super::error::{Found, Problem};
 use super::rate::{fits, rate, shown};
 use super::resample;
+use super::spec::Part;
 use super::table::Table;
 
 /// More repeated stamps than this fraction are no accident.
@@ -34,8 +35,14 @@ impl Grid {
     /// The grid for the table's stamps, at the given rate or at the one the stamps show.
     ///
     /// Uniform stamps keep their samples; others get the grid `t[0] + k / rate` up to
-    /// `t[last] + 0.5 / rate` (NumPy: `arange(t[0], t[-1] + 0.5 / rate, 1 / rate)`).
-    pub fn of(table: &Table, given: Option<f64>, warnings: &mut Vec<String>) -> Found<Grid> {
+    /// `t[last] + 0.5 / rate` (NumPy: `arange(t[0], t[-1] + 0.5 / rate, 1 / rate)`). A part given
+    /// by time is cut from the grid of the whole log; one given by rows has its own.
+    pub fn of(
+        table: &Table,
+        part: Part,
+        given: Option<f64>,
+        warnings: &mut Vec<String>,
+    ) -> Found<Grid> {
         let all = table.stamps();
         let start = all.first().copied().unwrap_or(0.0);
         if let Some(rate_hz) = given.filter(|&rate| fits(all, rate, true)) {
@@ -63,6 +70,7 @@ impl Grid {
             });
         }
         let len = length(&stamps, rate_hz)?;
+        let (start, len) = cut(table, part, rate_hz, (start, len));
         report_irregular(&stamps, rate_hz, table, kept.as_deref(), warnings);
         Ok(Grid {
             rate_hz,
@@ -130,6 +138,23 @@ fn without_repeats(table: &Table, warnings: &mut Vec<String>) -> Found<Option<Ve
             .filter(|k| repeats.binary_search(k).is_err())
             .collect(),
     ))
+}
+
+/// Start and length of the grid inside the part. Other parts of the log share the grid, so that
+/// joined parts hold no sample twice and miss none; up to half a step outside the rows, the first
+/// and the last value are held.
+fn cut(table: &Table, part: Part, rate_hz: f64, (start, len): (f64, usize)) -> (f64, usize) {
+    /// A grid point this near to a limit, in steps, lies on it.
+    const TIE: f64 = 1e-6;
+    let (Part::Seconds { from, to }, true) = (part, table.origin.is_finite()) else {
+        return (start, len);
+    };
+    let steps = |time: f64| (time - table.origin) * rate_hz;
+    let earliest = (steps(start) - 0.5).max(from.map_or(0.0, steps)).max(0.0);
+    let first = (earliest - TIE).ceil();
+    let last = steps(start) + len as f64;
+    let end = (to.map_or(last, |to| steps(to).min(last)) - TIE).ceil();
+    (table.origin + first / rate_hz, (end - first).max(0.0) as usize)
 }
 
 /// `len(numpy.arange(first, last + 0.5 / rate, 1 / rate))`, if it is a sensible number.

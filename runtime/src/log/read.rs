@@ -74,7 +74,7 @@ pub fn read(
     let layout = lookup.layout(&mut warnings)?;
     let table = table::read(source, &layout, spec.part, &mut warnings).map_err(in_log)?;
     check_finite(&table, &layout.channels, 0..1).map_err(in_log)?;
-    let grid = Grid::of(&table, companion.rate_hz, &mut warnings).map_err(in_log)?;
+    let grid = Grid::of(&table, spec.part, companion.rate_hz, &mut warnings).map_err(in_log)?;
     let mut rows = Rows::of(table, &layout, drives, options, &mut warnings).map_err(in_log)?;
     rows.motion()
         .check(joints, companion.encoder_resolution, &mut warnings);

@@ -6,8 +6,9 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
-/// The first data row of a log (the line after the header) is row 1, in parts and in messages.
-pub const FIRST_ROW: usize = 1;
+/// The first data row of a log (the line after the header) is row 0, in parts and in messages: a
+/// part `@#a..b` holds the rows that the slice `[a:b]` holds in NumPy and pandas.
+pub const FIRST_ROW: usize = 0;
 
 /// How far a stamp may lie from a limit of a part and still count as equal to it, s: stamps that
 /// went through a unit or a clock carry rounding errors.
@@ -274,9 +275,6 @@ fn seconds(limit: &str) -> Result<f64, &'static str> {
 }
 
 fn row(limit: &str) -> Result<usize, &'static str> {
-    let value = limit
-        .parse::<usize>()
-        .ok()
-        .filter(|&value| value >= FIRST_ROW);
-    value.ok_or("a row number (data rows are counted from 1)")
+    let value = limit.parse::<usize>().ok();
+    value.ok_or("a row number (data rows are counted from 0)")
 }

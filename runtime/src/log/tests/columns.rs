@@ -50,7 +50,7 @@ fn log_without_torque_is_read_where_none_is_required() {
     assert_eq!(holes.tau, None);
     assert_says(
         &holes.warnings.join("\n"),
-        &["`tau1`: values missing, NaN or infinite: 1", "row 9"],
+        &["`tau1`: values missing, NaN or infinite: 1", "row 8"],
     );
     let currents = read(&clean().replace("tau", "i"));
     assert_eq!(currents.tau, None);

@@ -49,8 +49,8 @@ fn parts_of_a_log_follow_each_other_without_overlap() {
     };
     let (first, second) = (part("@..0.5"), part("@0.5..1"));
     assert_eq!((first.len, second.len, second.start), (50, 50, 0.5));
-    assert_eq!(part("@#51..101").q, second.q);
-    assert_eq!(part("@#1..51").q, first.q);
+    assert_eq!(part("@#50..100").q, second.q);
+    assert_eq!(part("@#0..50").q, first.q);
     let error = read_part(&file, "@7..8", &Drives::default(), &ReadOptions::default());
     assert_says(
         &error.unwrap_err().to_string(),
@@ -65,13 +65,13 @@ fn last_row_cut_short_is_left_out_and_one_inside_is_an_error() {
     assert_eq!(cut.len, 199);
     assert_says(
         &cut.warnings.join("\n"),
-        &["Row 200 (line 201), the last one"],
+        &["Row 199 (line 201), the last one"],
     );
     let lines: Vec<&str> = text.lines().collect();
     let inside = text.replace(lines[20], "0.19,0.2");
     assert_says(
         &message(&inside),
-        &["row 20 (line 21) has 2 fields, the header has 5"],
+        &["row 19 (line 21) has 2 fields, the header has 5"],
     );
 }
 

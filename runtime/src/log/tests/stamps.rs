@@ -11,7 +11,7 @@ fn time_that_goes_back_is_located_and_can_be_cut_around() {
     });
     assert_says(
         &message(&text),
-        &["from 3048.1 s to 0.6 s at row 61 (line 62)"],
+        &["from 3048.1 s to 0.6 s at row 60 (line 62)"],
     );
     let file = file("log.csv", &text);
     let read = |part: &str| read_part(&file, part, &Drives::default(), &ReadOptions::default());
@@ -23,9 +23,9 @@ fn time_that_goes_back_is_located_and_can_be_cut_around() {
     let before = read("@0.2..0.5").unwrap().0;
     assert_says(
         &before.warnings.join("\n"),
-        &["Outside this part, time goes back", "row 61"],
+        &["Outside this part, time goes back", "row 60"],
     );
-    let after = read("@#61..").unwrap().0;
+    let after = read("@#60..").unwrap().0;
     assert_eq!((after.len, after.warnings.len()), (140, 0));
 }
 
@@ -40,7 +40,7 @@ fn stamp_that_repeats_is_left_out_and_reported() {
         &log.warnings.join("\n"),
         &[
             "stamp of the row before are left out: 1, of which 0",
-            "row 31",
+            "row 30",
         ],
     );
     // Predictions still have one value per row.
@@ -91,7 +91,7 @@ fn sample_that_was_lost_is_interpolated_and_reported() {
         &log.warnings.join("\n"),
         &[
             "2 of 178 steps",
-            "the longest is 210 ms (after row 98, t = 0.98 s)",
+            "the longest is 210 ms (after row 97, t = 0.98 s)",
             "Gaps longer than 5 steps are bridged by straight lines (1)",
         ],
     );

@@ -11,7 +11,7 @@ fn number_that_is_none_is_located() {
     });
     assert_says(
         &message(&text),
-        &["row 17 (line 18), column `q2`: `1.2.3` is not a number"],
+        &["row 16 (line 18), column `q2`: `1.2.3` is not a number"],
     );
     let comma = log(|row, fields| {
         if row == 3 {
@@ -20,7 +20,7 @@ fn number_that_is_none_is_located() {
     });
     assert_says(
         &message(&comma),
-        &["row 3 (line 4) has 6 fields, the header has 5"],
+        &["row 2 (line 4) has 6 fields, the header has 5"],
     );
 }
 
@@ -34,7 +34,7 @@ fn values_that_are_not_finite_are_counted_and_located() {
         });
         assert_says(
             &message(&text),
-            &["values missing, NaN or infinite: 4", "5, 6, 100, ..."],
+            &["values missing, NaN or infinite: 4", "4, 5, 99, ..."],
         );
     }
     let text = log(|row, fields| {
@@ -44,7 +44,7 @@ fn values_that_are_not_finite_are_counted_and_located() {
     });
     assert_says(
         &message(&text),
-        &["column `t`: values missing, NaN or infinite: 1", "row 50"],
+        &["column `t`: values missing, NaN or infinite: 1", "row 49"],
     );
 }
 
