@@ -271,7 +271,8 @@ pub struct DrivesSpec {
     pub commanded: bool,
 }
 
-/// The `[prior]` table: one sigma of the described values.
+/// The `[prior]` table: one sigma of the described values; infinite where nothing is stated, which
+/// is then no knowledge.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PriorSpec {
     /// Fraction of each link's mass.

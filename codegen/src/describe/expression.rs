@@ -176,7 +176,13 @@ impl<'t> Parser<'t> {
     }
 
     fn unknown(&self, word: &str) -> Mistake {
-        let mut known: Vec<&str> = self.lengths.iter().map(|(name, _)| name.as_str()).collect();
+        const COMPARED: usize = 100;
+        let mut known: Vec<&str> = self
+            .lengths
+            .iter()
+            .take(COMPARED)
+            .map(|(name, _)| name.as_str())
+            .collect();
         known.extend(RESERVED);
         let help = match suggest::nearest(word, known.iter().copied()) {
             Some(near) => format!("did you mean `{near}`?"),

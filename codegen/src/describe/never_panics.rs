@@ -192,7 +192,7 @@ fn read_text_unedited_samples_are_descriptions() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(400) })]
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn read_text_any_text_does_not_panic(text in "\\PC{0,200}") {

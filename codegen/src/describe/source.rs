@@ -36,6 +36,7 @@ impl Kind {
             "xacro" => Err(finding(code::XACRO, "this is a xacro file, not a URDF")
                 .help("run `xacro robot.xacro > robot.urdf` and read the result")),
             _ if text.trim_start().starts_with('<') => Ok(Kind::Urdf),
+            _ if is_robot_toml(text) => Ok(Kind::Toml),
             _ => Err(finding(
                 code::FILE_FORMAT,
                 "not a robot description that can be read",
@@ -43,6 +44,16 @@ impl Kind {
             .help("robots are .urdf or .toml files")),
         }
     }
+}
+
+/// Whether a text says where joints are in the way of a TOML robot.
+fn is_robot_toml(text: &str) -> bool {
+    let key = |line: &str| {
+        line.split_once('=')
+            .is_some_and(|(key, _)| key.trim() == "urdf")
+    };
+    text.lines()
+        .any(|line| line.trim() == "[[joint]]" || key(line))
 }
 
 /// The name of a file without folder and extension.

@@ -154,18 +154,18 @@ fn names(
         }
         (None, None) => (table.offset, Vec::new()),
     };
-    let mut names: Vec<String> = Vec::new();
-    for value in &values {
-        names.push(moving(value, joints, to)?.to_owned());
-    }
-    let distinct = names
-        .iter()
-        .enumerate()
-        .all(|(i, name)| !names[..i].contains(name));
-    if names.len() == kind.arity() && distinct {
-        return Some(names);
+    if values.len() == kind.arity() {
+        let names: Vec<Option<&str>> = values
+            .iter()
+            .map(|value| moving(value, joints, to))
+            .collect();
+        let names: Vec<&str> = names.into_iter().collect::<Option<_>>()?;
+        if (1..names.len()).all(|i| !names[..i].contains(&names[i])) {
+            return Some(names.into_iter().map(str::to_owned).collect());
+        }
     }
     let wanted = match kind.arity() {
+        0 => "no joint".to_owned(),
         1 => "`joint = \"NAME\"`".to_owned(),
         n => format!("`joints = [...]` with {n} different names"),
     };

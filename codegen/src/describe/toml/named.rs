@@ -9,10 +9,18 @@ use super::table::{Value, in_text_order, wrong_type};
 use super::value;
 use toml::de::DeValue;
 
+/// Most named lengths: every one is looked at for every name in an expression.
+const MAX_LENGTHS: usize = 1000;
+
 /// Reads `[lengths]`; a length may be an expression over the ones before it.
 pub(super) fn lengths(value: Value<'_>, to: &mut Findings) -> Vec<(String, f64)> {
     let mut lengths = Vec::new();
     for (name, offset, value) in entries(value, "[lengths]", to) {
+        if lengths.len() >= MAX_LENGTHS {
+            let message = format!("more than {MAX_LENGTHS} lengths");
+            to.error(offset, finding(code::NUMBER_RANGE, message));
+            break;
+        }
         if expression::RESERVED.contains(&name) {
             let message = format!("`{name}` cannot name a length: it has a meaning already");
             to.error(offset, finding(code::NAME_INVALID, message));

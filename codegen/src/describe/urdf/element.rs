@@ -28,6 +28,28 @@ const ATTRIBUTES: [&str; 19] = [
     "version",
 ];
 
+/// Elements of URDF: no misspelling of each other.
+const CHILDREN: [&str; 18] = [
+    "link",
+    "joint",
+    "material",
+    "gazebo",
+    "transmission",
+    "inertial",
+    "visual",
+    "collision",
+    "origin",
+    "mass",
+    "inertia",
+    "parent",
+    "child",
+    "axis",
+    "limit",
+    "dynamics",
+    "mimic",
+    "calibration",
+];
+
 /// An element.
 #[derive(Clone, Copy)]
 pub(super) struct Element<'a> {
@@ -155,14 +177,14 @@ impl<'a> Element<'a> {
         found
     }
 
-    /// Reports children that are almost one of the known elements: a misspelt `<orgin>` would
-    /// silently be a joint at the origin.
-    pub(super) fn check_children(self, known: &[&str], owner: &str, to: &mut Findings) {
+    /// Reports children that are almost one of the elements that matter: a misspelt `<orgin>`
+    /// would silently be a joint at the origin. Others may be what they like.
+    pub(super) fn check_children(self, matter: &[&str], owner: &str, to: &mut Findings) {
         for child in self
             .children()
-            .filter(|child| !known.contains(&child.tag()))
+            .filter(|child| !CHILDREN.contains(&child.tag()))
         {
-            if let Some(near) = suggest::nearest(child.tag(), known.iter().copied()) {
+            if let Some(near) = suggest::nearest(child.tag(), matter.iter().copied()) {
                 let message = format!("unknown element <{}> in {owner}", child.tag());
                 let help = format!("did you mean <{near}>?");
                 to.error(

@@ -12,17 +12,7 @@ use super::number;
 use super::origin;
 use std::collections::HashSet;
 
-const CHILDREN: [&str; 9] = [
-    "parent",
-    "child",
-    "origin",
-    "axis",
-    "limit",
-    "dynamics",
-    "mimic",
-    "calibration",
-    "safety_controller",
-];
+const MATTER: [&str; 6] = ["parent", "child", "origin", "axis", "limit", "mimic"];
 const LIMITS: [&str; 4] = ["lower", "upper", "effort", "velocity"];
 const TYPES: [&str; 6] = [
     "revolute",
@@ -58,7 +48,7 @@ pub(super) fn read(joint: Element<'_>, digest: &mut Digest, to: &mut Findings) -
     let name = joint.name(to).unwrap_or_default();
     let owner = &format!("joint `{name}`");
     misplaced(joint, owner, to);
-    joint.check_children(&CHILDREN, owner, to);
+    joint.check_children(&MATTER, owner, to);
     let kind = kind(joint, owner, to);
     digest.open("joint", &[("name", name), ("type", kind)]);
     let edge = Edge {

@@ -23,7 +23,7 @@ pub(super) fn read(link: Element<'_>, digest: &mut Digest, to: &mut Findings) ->
     let name = link.name(to).unwrap_or_default();
     let owner = format!("link `{name}`");
     let misplaced = misplaced(link, &owner, to);
-    link.check_children(&["inertial", "visual", "collision"], &owner, to);
+    link.check_children(&["inertial"], &owner, to);
     digest.open("link", &[("name", name)]);
     let inertial = link.child("inertial", &owner, to);
     let places = inertial.map(|inertial| read_inertial(inertial, &owner, misplaced, digest, to));

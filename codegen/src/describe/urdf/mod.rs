@@ -17,6 +17,9 @@ mod origin;
 mod values;
 mod walk;
 
+#[cfg(test)]
+mod tests;
+
 use super::code;
 use super::description::{Snap, UrdfTree};
 use super::diagnostic::{Diagnostic, Span};

@@ -37,7 +37,7 @@ impl Texts {
                 return None;
             }
         }
-        root.check_children(&["link", "joint", "gazebo", "material"], "<robot>", to);
+        root.check_children(&["link", "joint"], "<robot>", to);
         let mut digest = Digest::new(root.attribute("version").map(|version| version.text));
         let (mut links, mut joints, mut meshes) = (Vec::new(), Vec::new(), (0, 0));
         for child in root.children() {
