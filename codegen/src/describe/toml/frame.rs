@@ -114,20 +114,15 @@ fn companion(
     let read = joint::extras(&mut table, to);
     table.finish(to);
     let joint = &mut tree.joints[index];
-    if joint.motion == Motion::Fixed && (read.effects.is_some() || read.gain.is_some()) {
-        let message = format!("joint `{name}` does not move: it has neither effects nor a gain");
-        to.error(offset, finding(code::EFFECT_JOINT, message));
-    }
-    let old = joint.limits;
-    joint.limits = Limits {
-        lower: stated.lower.or(old.lower),
-        upper: stated.upper.or(old.upper),
-        velocity: stated.velocity.or(old.velocity),
-        effort: stated.effort.or(old.effort),
-    };
-    if let (Some(lower), Some(upper)) = (joint.limits.lower, joint.limits.upper)
+    joint::check_motion(name, joint.motion, &read, offset, to);
+    let (old, both) = (
+        joint.limits,
+        stated.lower.is_some() && stated.upper.is_some(),
+    );
+    joint.limits = merged(old, stated);
+    if !both
+        && let (Some(lower), Some(upper)) = (joint.limits.lower, joint.limits.upper)
         && lower > upper
-        && (stated.lower.is_none() || stated.upper.is_none())
     {
         let message = format!("joint `{name}`: lower {lower} is above upper {upper}");
         let help = "one of the two is from the URDF";
@@ -136,7 +131,17 @@ fn companion(
     extras[index] = read;
 }
 
-/// The settings of the joints that move; one of a joint that does not is an error of its own.
+/// The limits of the URDF, except where the companion states its own.
+fn merged(old: Limits, stated: Limits) -> Limits {
+    Limits {
+        lower: stated.lower.or(old.lower),
+        upper: stated.upper.or(old.upper),
+        velocity: stated.velocity.or(old.velocity),
+        effort: stated.effort.or(old.effort),
+    }
+}
+
+/// The settings of the joints that move.
 pub(super) fn of_moving<'e>(joints: &[(String, Motion)], extras: &'e [Extras]) -> Vec<&'e Extras> {
     let moves = |(joint, extras): (&(String, Motion), &'e Extras)| {
         (joint.1 != Motion::Fixed).then_some(extras)

@@ -1,7 +1,7 @@
 //! What a `[[joint]]` row or a `[joint.NAME]` table says beside the geometry.
 
 use super::super::code;
-use super::super::description::Limits;
+use super::super::description::{Limits, Motion};
 use super::super::findings::{Findings, finding};
 use super::effects::{self, Wanted};
 use super::table::{Table, Value};
@@ -27,6 +27,20 @@ pub(super) fn extras(table: &mut Table<'_>, to: &mut Findings) -> Extras {
         Some((gain, value.span().start))
     });
     Extras { effects, gain }
+}
+
+/// Reports effects or a gain of a joint that does not move.
+pub(super) fn check_motion(
+    name: &str,
+    motion: Motion,
+    extras: &Extras,
+    offset: usize,
+    to: &mut Findings,
+) {
+    if motion == Motion::Fixed && (extras.effects.is_some() || extras.gain.is_some()) {
+        let message = format!("joint `{name}` does not move: it has neither effects nor a gain");
+        to.error(offset, finding(code::EFFECT_JOINT, message));
+    }
 }
 
 /// Reads `limits`: `[lower, upper]`, or a table of lower, upper, velocity, effort.

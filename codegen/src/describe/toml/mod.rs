@@ -24,6 +24,7 @@ use super::findings::{Finding, Findings, finding};
 use super::identifier;
 use super::source;
 use ::toml::de::DeTable;
+use frame::Frame;
 use rest::Rest;
 use sha2::{Digest, Sha256};
 use table::Table;
@@ -35,10 +36,10 @@ type Load<'l> = &'l dyn Fn(&str) -> Result<String, String>;
 
 /// Reads a TOML text; `load` gives the text of the URDF that it names.
 pub(super) fn read(text: &str, file: &str, load: Load) -> Result<Description, Vec<Diagnostic>> {
-    let mut findings = Findings::new(text, file);
     if let Some(found) = not_toml(text) {
         return Err(vec![found.on_file(file)]);
     }
+    let mut findings = Findings::new(text, file);
     let (document, mistakes) = DeTable::parse_recoverable(text);
     // Later ones are mostly consequences.
     if let Some(mistake) = mistakes.first() {
@@ -48,30 +49,24 @@ pub(super) fn read(text: &str, file: &str, load: Load) -> Result<Description, Ve
         return Err(findings.decide().err().unwrap_or_default());
     }
     let mut table = Table::new(document.get_ref(), "", 0);
-    let named = table.get("urdf").and_then(|value| {
-        Some((
-            value::text(value, "`urdf`", &mut findings)?,
-            value.span().start,
-        ))
-    });
-    let Some((path, offset)) = named else {
+    let path = table.get("urdf");
+    let path = path.and_then(|value| Some((value, value::text(value, "`urdf`", &mut findings)?)));
+    let Some((value, path)) = path else {
         return describe(table, None, text, file, findings);
     };
     match load(path) {
         Ok(urdf) => {
             let beside = source::beside(file, path);
-            describe(
-                table,
-                Some((source::without_mark(&urdf), &beside)),
-                text,
-                file,
-                findings,
-            )
+            let urdf = (source::without_mark(&urdf), beside.as_str());
+            describe(table, Some(urdf), text, file, findings)
         }
         Err(why) => {
-            let message = format!("cannot read `{path}`: {why}");
+            let found = finding(
+                code::FILE_UNREADABLE,
+                format!("cannot read `{path}`: {why}"),
+            );
             let help = "a path is relative to the file that names it";
-            findings.error(offset, finding(code::FILE_UNREADABLE, message).help(help));
+            findings.error(value.span().start, found.help(help));
             Err(findings.decide().err().unwrap_or_default())
         }
     }
@@ -94,6 +89,7 @@ pub(super) fn read_bare(urdf: &str, file: &str) -> Result<Description, Vec<Diagn
     describe(table, Some((urdf, file)), "", file, Findings::new("", file))
 }
 
+/// Reads everything from a table, and from the text and file of a URDF if there is one.
 fn describe(
     mut table: Table<'_>,
     urdf: Option<(&str, &str)>,
@@ -105,18 +101,18 @@ fn describe(
         .get("lengths")
         .map(|value| named::lengths(value, &mut to));
     let lengths = lengths.unwrap_or_default();
-    let name = table
-        .get("name")
-        .and_then(|value| value::text(value, "`name`", &mut to));
+    let name = table.get("name");
+    let name = name.and_then(|value| value::text(value, "`name`", &mut to));
     let frame = match urdf {
-        Some((urdf, urdf_file)) => match frame::from_urdf(&mut table, urdf, urdf_file, &mut to) {
-            Ok(frame) => frame,
-            Err(mut errors) => {
-                errors.extend(to.decide().err().unwrap_or_default());
-                return Err(errors);
-            }
-        },
-        None => frame::from_rows(&mut table, &lengths, &mut to),
+        Some((urdf, file)) => frame::from_urdf(&mut table, urdf, file, &mut to),
+        None => Ok(frame::from_rows(&mut table, &lengths, &mut to)),
+    };
+    let frame = match frame {
+        Ok(frame) => frame,
+        Err(mut errors) => {
+            errors.extend(to.decide().err().unwrap_or_default());
+            return Err(errors);
+        }
     };
     let joints = check::joints(&frame.geometry);
     // Where joints could not be read, their absence is no news.
@@ -126,14 +122,26 @@ fn describe(
     let rest = Rest::read(&mut table, &joints, &frame.extras, &lengths, &mut to);
     table.finish(&mut to);
     let mut warnings = to.decide()?;
-    warnings.extend(frame.warnings);
+    warnings.extend(frame.warnings.iter().cloned());
     let name = name
-        .map(str::to_owned)
-        .or(frame.name)
-        .unwrap_or_else(|| source::stem(file));
-    Ok(Description {
-        name: identifier::robot_name(&name),
-        hash: hash(&[text, urdf.map_or("", |(urdf, _)| urdf)]),
+        .or(frame.name.as_deref())
+        .map_or_else(|| source::stem(file), str::to_owned);
+    let name = identifier::robot_name(&name);
+    let hash = hash(&[text, urdf.map_or("", |(urdf, _)| urdf)]);
+    Ok(assemble(name, hash, lengths, frame, rest, warnings))
+}
+
+fn assemble(
+    name: String,
+    hash: String,
+    lengths: Vec<(String, f64)>,
+    frame: Frame,
+    rest: Rest,
+    warnings: Vec<Diagnostic>,
+) -> Description {
+    Description {
+        name,
+        hash,
         gravity: rest.gravity,
         lengths,
         geometry: frame.geometry,
@@ -145,7 +153,7 @@ fn describe(
         prior: rest.prior,
         warnings,
         snaps: frame.snaps,
-    })
+    }
 }
 
 /// SHA-256 of the texts one after the other, as `cat` and `sha256sum` give it.

@@ -81,7 +81,9 @@ impl RowReader<'_, '_> {
             motion,
             span,
         };
-        (row, joint::extras(&mut self.table, to))
+        let extras = joint::extras(&mut self.table, to);
+        joint::check_motion(&row.name, row.motion, &extras, self.table.offset, to);
+        (row, extras)
     }
 
     fn name(&mut self, index: usize, to: &mut Findings) -> String {

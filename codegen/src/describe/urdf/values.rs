@@ -52,43 +52,37 @@ pub(super) fn origin(
     to: &mut Findings,
 ) -> Pose {
     let mut origin = pose(&joint.origin);
-    let place = text.origin.unwrap_or_default();
-    let name = &text.edge.named.name;
-    if let Some(far) = origin
-        .xyz
-        .iter()
-        .find(|part| part.abs() > check::DOUBTFUL_LENGTH)
-    {
-        to.warn(
-            place,
-            check::doubtful_length(&format!("xyz of joint `{name}`"), *far),
-        );
-    }
-    if let Some(wide) = origin
-        .rpy
-        .iter()
-        .find(|part| part.abs() > check::DOUBTFUL_ANGLE)
-    {
-        to.warn(
-            place,
-            check::doubtful_angle(&format!("rpy of joint `{name}`"), *wide),
-        );
-    }
+    check_units(&origin, text, to);
     for part in &mut origin.rpy {
         let (snapped, Some(turns)) = angle::snap(*part) else {
             continue;
         };
         if (snapped - *part).abs() > angle::REPORTED {
-            let to = angle::quarter_turns(turns);
-            snaps.push(Snap {
-                joint: name.clone(),
-                from: *part,
-                to,
-            });
+            snaps.push(snap(text, *part, angle::quarter_turns(turns)));
         }
         *part = snapped;
     }
     origin
+}
+
+fn snap(text: &JointText, from: f64, to: String) -> Snap {
+    let joint = text.edge.named.name.clone();
+    Snap { joint, from, to }
+}
+
+/// Warns of what looks like millimetres or degrees.
+fn check_units(origin: &Pose, text: &JointText, to: &mut Findings) {
+    let place = text.origin.unwrap_or_default();
+    let name = &text.edge.named.name;
+    let beyond = |parts: [f64; 3], limit: f64| parts.into_iter().find(|part| part.abs() > limit);
+    if let Some(far) = beyond(origin.xyz, check::DOUBTFUL_LENGTH) {
+        let what = format!("xyz of joint `{name}`");
+        to.warn(place, check::doubtful_length(&what, far));
+    }
+    if let Some(wide) = beyond(origin.rpy, check::DOUBTFUL_ANGLE) {
+        let what = format!("rpy of joint `{name}`");
+        to.warn(place, check::doubtful_angle(&what, wide));
+    }
 }
 
 /// The unit axis of a joint, snapped to a coordinate axis that it is close to.
@@ -101,45 +95,42 @@ pub(super) fn axis(
     const X: [f64; 3] = [1.0, 0.0, 0.0];
     let Some(place) = text.axis else { return X };
     let name = &text.edge.named.name;
-    let written = joint.axis.xyz.0;
-    // Divided by the largest part first, so that no square over- or underflows.
-    let largest = written
-        .iter()
-        .fold(0.0_f64, |most, part| most.max(part.abs()));
-    if largest == 0.0 {
+    let Some((unit, length)) = normalised(joint.axis.xyz.0) else {
         let message = format!("the axis of joint `{name}` is zero");
         let help = "give it a direction, such as xyz=\"0 0 1\"";
         to.error(place, finding(code::AXIS_ZERO, message).help(help));
         return X;
-    }
-    let scaled = written.map(|part| part / largest);
-    let length = scaled.iter().map(|part| part * part).sum::<f64>().sqrt();
-    let unit = scaled.map(|part| part / length);
-    if (length * largest - 1.0).abs() > UNIT_TOLERANCE {
-        let message = format!(
-            "the axis of joint `{name}` has length {:.3e}",
-            length * largest
-        );
-        to.warn(
-            place,
-            finding(code::AXIS_NOT_UNIT, message).help("it is normalised"),
-        );
+    };
+    if (length - 1.0).abs() > UNIT_TOLERANCE {
+        let message = format!("the axis of joint `{name}` has length {length:.3e}");
+        let help = "it is normalised";
+        to.warn(place, finding(code::AXIS_NOT_UNIT, message).help(help));
     }
     let Some((index, sign, tilt)) = angle::snap_axis(unit) else {
         return unit;
     };
     if tilt > angle::REPORTED {
-        let sign = if sign < 0.0 { "-" } else { "" };
-        let to = format!("axis {sign}{}", ["x", "y", "z"][index]);
-        snaps.push(Snap {
-            joint: name.clone(),
-            from: tilt,
-            to,
-        });
+        let minus = if sign < 0.0 { "-" } else { "" };
+        let axis = ["x", "y", "z"][index];
+        snaps.push(snap(text, tilt, format!("axis {minus}{axis}")));
     }
     let mut exact = [0.0; 3];
     exact[index] = sign;
     exact
+}
+
+/// Direction and length of a vector, unless it is zero.
+fn normalised(vector: [f64; 3]) -> Option<([f64; 3], f64)> {
+    let largest = vector
+        .iter()
+        .fold(0.0_f64, |most, part| most.max(part.abs()));
+    if largest == 0.0 {
+        return None;
+    }
+    // Divided by the largest part first, so that no square over- or underflows.
+    let scaled = vector.map(|part| part / largest);
+    let length = scaled.iter().map(|part| part * part).sum::<f64>().sqrt();
+    Some((scaled.map(|part| part / length), length * largest))
 }
 
 /// The limits that a joint states.

@@ -25,45 +25,24 @@ pub(super) struct Texts {
 impl Texts {
     /// Reads all links and joints, and goes on after a bad one.
     pub(super) fn read(root: Element<'_>, to: &mut Findings) -> Option<Texts> {
-        for tag in ["link", "joint"] {
-            let mut excess = root
-                .children()
-                .filter(|child| child.tag() == tag)
-                .skip(MAX_LINKS);
-            if let Some(child) = excess.next() {
-                let message = format!("more than {MAX_LINKS} <{tag}> elements");
-                let help = "a robot is read here, not a scene";
-                to.error(child.offset(), finding(code::XML_COUNT, message).help(help));
-                return None;
-            }
-        }
+        refuse_crowds(root, to)?;
         root.check_children(&["link", "joint"], "<robot>", to);
         let mut digest = Digest::new(root.attribute("version").map(|version| version.text));
-        let (mut links, mut joints, mut meshes) = (Vec::new(), Vec::new(), (0, 0));
+        let (mut links, mut joints) = (Vec::new(), Vec::new());
         for child in root.children() {
             match child.tag() {
-                "link" => {
-                    links.push(links::read(child, &mut digest, to));
-                    let (count, first) = child.count_below("mesh");
-                    meshes = (
-                        meshes.0 + count,
-                        if meshes.0 == 0 { first } else { meshes.1 },
-                    );
-                }
+                "link" => links.push(links::read(child, &mut digest, to)),
                 "joint" => joints.push(joints::read(child, &mut digest, to)),
                 _ => {}
             }
         }
         joints::check_mimic(&joints, to);
-        if meshes.0 > 0 {
-            let message = format!("{} mesh files are not read", meshes.0);
-            let help = "the model needs masses and inertias, not shapes";
-            to.warn(meshes.1, finding(code::MESHES_IGNORED, message).help(help));
-        }
+        warn_of_meshes(root, to);
+        let digest = digest.finish();
         Some(Texts {
             links,
             joints,
-            digest: digest.finish(),
+            digest,
         })
     }
 
@@ -87,38 +66,64 @@ impl Texts {
         if robot.links.len() != self.links.len() || robot.joints.len() != self.joints.len() {
             return None;
         }
-        let links = self
-            .links
-            .iter()
-            .zip(&robot.links)
-            .map(|(text, link)| UrdfLink {
-                name: text.named.name.clone(),
-                inertial: values::inertial(link, text, to),
-                span: text.named.span,
-            });
+        let named = self.links.iter().zip(&robot.links);
+        let links = named.map(|(text, link)| UrdfLink {
+            name: text.named.name.clone(),
+            inertial: values::inertial(link, text, to),
+            span: text.named.span,
+        });
         let links = links.collect();
         let mut snaps = Vec::new();
-        let mut joints: Vec<UrdfJoint> = Vec::new();
-        for (text, joint) in self.joints.iter().zip(&robot.joints) {
-            joints.push(UrdfJoint {
-                name: text.edge.named.name.clone(),
-                motion: text.motion,
-                parent: 0,
-                child: 0,
-                origin: values::origin(joint, text, &mut snaps, to),
-                axis: values::axis(joint, text, &mut snaps, to),
-                limits: values::limits(joint, text, to),
-                span: text.edge.named.span,
-            });
-        }
-        let moving = self
-            .joints
-            .iter()
-            .filter(|text| text.motion != Motion::Fixed);
-        let moving: Vec<&Named> = moving.map(|text| &text.edge.named).collect();
-        check::identifiers(&moving, to);
+        let named = self.joints.iter().zip(&robot.joints);
+        let joints = named.map(|(text, joint)| UrdfJoint {
+            name: text.edge.named.name.clone(),
+            motion: text.motion,
+            parent: 0,
+            child: 0,
+            origin: values::origin(joint, text, &mut snaps, to),
+            axis: values::axis(joint, text, &mut snaps, to),
+            limits: values::limits(joint, text, to),
+            span: text.edge.named.span,
+        });
+        let joints: Vec<UrdfJoint> = joints.collect();
+        check::identifiers(&self.moving(), to);
         let joints = ordered(&joints, &order?.joints, to);
         Some((UrdfTree { links, joints }, snaps))
+    }
+
+    /// Names of the joints that move.
+    fn moving(&self) -> Vec<&Named> {
+        let moves = |text: &&JointText| text.motion != Motion::Fixed;
+        let moving = self.joints.iter().filter(moves);
+        moving.map(|text| &text.edge.named).collect()
+    }
+}
+
+/// Reports more links or joints than a robot has.
+fn refuse_crowds(root: Element<'_>, to: &mut Findings) -> Option<()> {
+    for tag in ["link", "joint"] {
+        let mut all = root.children().filter(|child| child.tag() == tag);
+        if let Some(child) = all.nth(MAX_LINKS) {
+            let message = format!("more than {MAX_LINKS} <{tag}> elements");
+            let help = "a robot is read here, not a scene";
+            to.error(child.offset(), finding(code::XML_COUNT, message).help(help));
+            return None;
+        }
+    }
+    Some(())
+}
+
+fn warn_of_meshes(root: Element<'_>, to: &mut Findings) {
+    let links = root.children().filter(|child| child.tag() == "link");
+    let meshes: Vec<(usize, usize)> = links
+        .map(|link| link.count_below("mesh"))
+        .filter(|(count, _)| *count > 0)
+        .collect();
+    if let Some((_, first)) = meshes.first() {
+        let count: usize = meshes.iter().map(|(count, _)| count).sum();
+        let message = format!("{count} mesh files are not read");
+        let help = "the model needs masses and inertias, not shapes";
+        to.warn(*first, finding(code::MESHES_IGNORED, message).help(help));
     }
 }
 
