@@ -73,15 +73,24 @@ impl IdentificationModel for Interpreter {
     }
     fn evaluate(&self, output: Output, states: &States<'_>, signals: &mut [f64]) {
         let States { len, q, qd, qdd } = *states;
-        self.output(output).tape.run(&Batch { len, q, qd, qdd }, signals);
+        self.output(output)
+            .tape
+            .run(&Batch { len, q, qd, qdd }, signals);
     }
 }
 
 fn compile(robot: &Robot, signals: &Signals) -> Compiled {
-    let entry = |&(row, column, signal): &(usize, usize, usize)| Entry { row, column, signal };
+    let entry = |&(row, column, signal): &(usize, usize, usize)| Entry {
+        row,
+        column,
+        signal,
+    };
     let entries: Vec<Entry> = signals.entries.iter().map(entry).collect();
     Compiled {
-        pattern: Pattern { entries: Cow::Owned(entries), signals: signals.values.len() },
+        pattern: Pattern {
+            entries: Cow::Owned(entries),
+            signals: signals.values.len(),
+        },
         tape: Tape::new(&robot.graph, &signals.values),
     }
 }
@@ -91,7 +100,10 @@ fn joint(joint: &mechanism::Joint) -> Joint {
         mechanism::JointKind::Revolute => JointKind::Revolute,
         mechanism::JointKind::Prismatic => JointKind::Prismatic,
     };
-    Joint { name: Cow::Owned(joint.name.clone()), kind }
+    Joint {
+        name: Cow::Owned(joint.name.clone()),
+        kind,
+    }
 }
 
 fn column(parameter: &idim_codegen::base::BaseParameter) -> Column {

@@ -137,7 +137,11 @@ impl Builder {
         }
         let index = emit::index(&sources).map_err(BuildError::Emission)?;
         write_if_changed(&out.join("index.rs"), &index)?;
-        for path in sources.iter().flat_map(|source| &source.paths).chain(&self.folders) {
+        for path in sources
+            .iter()
+            .flat_map(|source| &source.paths)
+            .chain(&self.folders)
+        {
             println!("cargo::rerun-if-changed={}", path.display());
         }
         Ok(())
@@ -178,8 +182,14 @@ fn read_folder(folder: &Path) -> Result<Vec<Source>, BuildError> {
     for path in paths.iter().filter(|path| ending(path, "toml")) {
         sources.push(read(path)?);
     }
-    let named: Vec<PathBuf> = sources.iter().flat_map(|source| source.paths.clone()).collect();
-    for path in paths.iter().filter(|path| ending(path, "urdf") && !named.contains(path)) {
+    let named: Vec<PathBuf> = sources
+        .iter()
+        .flat_map(|source| source.paths.clone())
+        .collect();
+    for path in paths
+        .iter()
+        .filter(|path| ending(path, "urdf") && !named.contains(path))
+    {
         sources.push(read(path)?);
     }
     Ok(sources)
@@ -203,11 +213,15 @@ pub fn read(path: &Path) -> Result<Source, BuildError> {
         loaded.1.push(path);
         Ok(text)
     };
-    let description =
-        describe::read_text(&text, &path.display().to_string(), kind, &load);
+    let description = describe::read_text(&text, &path.display().to_string(), kind, &load);
     let robot = derive(description, &path.display().to_string())?;
     let (texts, paths) = loaded.into_inner();
-    Ok(Source { file, texts, paths, robot })
+    Ok(Source {
+        file,
+        texts,
+        paths,
+        robot,
+    })
 }
 
 /// Derives a robot from texts that were read before: the description first.
@@ -219,7 +233,9 @@ pub fn read_texts(texts: &[(&str, &str)]) -> Result<Robot, BuildError> {
     let kind = describe::kind_of(Path::new(file), text).map_err(BuildError::Description)?;
     let load = |named: &str| {
         let found = texts.iter().find(|(file, _)| *file == named);
-        found.map(|(_, text)| (*text).to_owned()).ok_or_else(|| format!("{named} is not there"))
+        found
+            .map(|(_, text)| (*text).to_owned())
+            .ok_or_else(|| format!("{named} is not there"))
     };
     derive(describe::read_text(text, file, kind, &load), file)
 }
@@ -229,15 +245,23 @@ fn derive(
     file: &str,
 ) -> Result<Robot, BuildError> {
     let description = description.map_err(BuildError::Description)?;
-    Robot::new(description).map_err(|source| BuildError::Base { file: file.to_owned(), source })
+    Robot::new(description).map_err(|source| BuildError::Base {
+        file: file.to_owned(),
+        source,
+    })
 }
 
 fn name_of(path: &Path) -> String {
-    path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default()
+    path.file_name()
+        .map(|name| name.to_string_lossy().into_owned())
+        .unwrap_or_default()
 }
 
 fn io(path: &Path, source: std::io::Error) -> BuildError {
-    BuildError::Io { path: path.display().to_string(), source }
+    BuildError::Io {
+        path: path.display().to_string(),
+        source,
+    }
 }
 
 /// An unchanged file keeps its time stamp, and cargo does not rebuild what includes it.

@@ -69,9 +69,11 @@ impl EffectKind {
     /// Its shape parameters; empty where the torque is linear in all of them.
     pub fn shapes(self) -> &'static [Shape] {
         match self {
-            EffectKind::Coulomb => {
-                &[Shape { name: "smoothing", default: 0.0, range: (0.0, f64::MAX) }]
-            }
+            EffectKind::Coulomb => &[Shape {
+                name: "smoothing",
+                default: 0.0,
+                range: (0.0, f64::MAX),
+            }],
             _ => &[],
         }
     }

@@ -34,8 +34,13 @@ pub enum Output {
 
 impl Output {
     /// All outputs, in a fixed order.
-    pub const ALL: [Output; 5] =
-        [Output::Explicit, Output::Momentum, Output::Rest, Output::Energy, Output::Power];
+    pub const ALL: [Output; 5] = [
+        Output::Explicit,
+        Output::Momentum,
+        Output::Rest,
+        Output::Energy,
+        Output::Power,
+    ];
 }
 
 /// Operation counts for the inertial base columns.
@@ -75,7 +80,13 @@ impl Robot {
         let standard = derive::standard(&mut graph, &mechanism);
         let (ends, standard) = (standard.ends, standard.parameters);
         let base = base::parameters(&mut graph, &mechanism, standard, &description.scaled)?;
-        Ok(Robot { description, mechanism, graph, ends, base })
+        Ok(Robot {
+            description,
+            mechanism,
+            graph,
+            ends,
+            base,
+        })
     }
 
     /// The non-zero entries of an output, by row, then by column.
@@ -97,7 +108,10 @@ impl Robot {
                 Output::Energy => columns.energy.map(|h| (0, h)).into_iter().collect(),
                 Output::Power => columns.power.map(|dh| (0, dh)).into_iter().collect(),
             };
-            entries.extend(rows.into_iter().map(|(row, value)| Entry { row, column, value }));
+            entries.extend(
+                rows.into_iter()
+                    .map(|(row, value)| Entry { row, column, value }),
+            );
         }
         entries.sort_by_key(|entry| (entry.row, entry.column));
         entries

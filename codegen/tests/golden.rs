@@ -5,7 +5,9 @@ use std::path::PathBuf;
 use idim_codegen::{builder, emit};
 
 fn robot(file: &str) -> String {
-    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("..").join(file);
+    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+        .join("..")
+        .join(file);
     let source = builder::read(&path).unwrap();
     emit::rust(&source.robot).unwrap()
 }

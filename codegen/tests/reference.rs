@@ -26,7 +26,12 @@ fn reference(name: &str) -> Option<Value> {
 }
 
 /// The serial robots of the geometry file with gravity along `gravity`.
-fn description(name: &str, robot: &Value, gravity: [f64; 3], effects: &[EffectKind]) -> Description {
+fn description(
+    name: &str,
+    robot: &Value,
+    gravity: [f64; 3],
+    effects: &[EffectKind],
+) -> Description {
     let lengths = &robot["numeric"];
     let number = |value: &Value| -> Quantity {
         let text = value.as_str().unwrap().to_owned();
@@ -44,7 +49,11 @@ fn description(name: &str, robot: &Value, gravity: [f64; 3], effects: &[EffectKi
         .iter()
         .map(|frame| MdhRow {
             name: format!("joint{}", frame["j"]),
-            motion: if frame["sigma"] == 1 { Motion::Prismatic } else { Motion::Revolute },
+            motion: if frame["sigma"] == 1 {
+                Motion::Prismatic
+            } else {
+                Motion::Revolute
+            },
             ant: frame["ant"].as_u64().unwrap() as usize,
             gamma: number(&frame["gamma"]),
             b: number(&frame["b"]),
@@ -93,18 +102,26 @@ fn gravity(robot: &Value) -> [f64; 3] {
 
 /// The name of the independent standard parameter of each base parameter.
 fn kept(robot: &Robot) -> Vec<String> {
-    robot.base.parameters.iter().map(|p| p.relation[0].1.clone()).collect()
+    robot
+        .base
+        .parameters
+        .iter()
+        .map(|p| p.relation[0].1.clone())
+        .collect()
 }
 
 #[test]
 fn base_parameters_are_the_classical_ones() {
-    let (Some(geometry), Some(base)) =
-        (reference("mdh_geometry.json"), reference("base_parameters.json"))
-    else {
+    let (Some(geometry), Some(base)) = (
+        reference("mdh_geometry.json"),
+        reference("base_parameters.json"),
+    ) else {
         return;
     };
     for (name, expected) in base["robots"].as_object().unwrap() {
-        let Some(columns) = expected["base_columns"].as_array() else { continue };
+        let Some(columns) = expected["base_columns"].as_array() else {
+            continue;
+        };
         let source = &geometry["robots"][name];
         let rigid = Robot::new(description(name, source, gravity(source), &[])).unwrap();
         assert_eq!(sorted(kept(&rigid)), sorted(texts(columns)), "{name}");
@@ -112,49 +129,74 @@ fn base_parameters_are_the_classical_ones() {
 
         let rotor = description(name, source, gravity(source), &[EffectKind::RotorInertia]);
         let rotor = Robot::new(rotor).unwrap();
-        assert_eq!(rotor.base.parameters.len(), expected["base_with_rotor"], "{name}, rotors");
+        assert_eq!(
+            rotor.base.parameters.len(),
+            expected["base_with_rotor"],
+            "{name}, rotors"
+        );
 
         let tilted = description(name, source, [3.0, -2.0, -9.0], &[]);
         let tilted = Robot::new(tilted).unwrap();
-        assert_eq!(tilted.base.parameters.len(), expected["base_rigid_tilted_gravity"], "{name}");
+        assert_eq!(
+            tilted.base.parameters.len(),
+            expected["base_rigid_tilted_gravity"],
+            "{name}"
+        );
     }
 }
 
 #[test]
 fn regrouping_relations_are_those_of_the_reference() {
-    let (Some(geometry), Some(base)) =
-        (reference("mdh_geometry.json"), reference("base_parameters.json"))
-    else {
+    let (Some(geometry), Some(base)) = (
+        reference("mdh_geometry.json"),
+        reference("base_parameters.json"),
+    ) else {
         return;
     };
     for (name, expected) in base["robots"].as_object().unwrap() {
-        let Some(dropped) = expected["numeric_regroup_of_eliminated"].as_object() else { continue };
+        let Some(dropped) = expected["numeric_regroup_of_eliminated"].as_object() else {
+            continue;
+        };
         let source = &geometry["robots"][name];
         let robot = Robot::new(description(name, source, gravity(source), &[])).unwrap();
         let mut relations: HashMap<(String, String), f64> = HashMap::new();
         for parameter in &robot.base.parameters {
             for (coefficient, other) in &parameter.relation[1..] {
-                relations.insert((other.clone(), parameter.relation[0].1.clone()), *coefficient);
+                relations.insert(
+                    (other.clone(), parameter.relation[0].1.clone()),
+                    *coefficient,
+                );
             }
         }
         let mut seen = 0;
         for (other, into) in dropped {
             for (kept, coefficient) in into.as_object().unwrap() {
                 let coefficient = coefficient.as_f64().unwrap();
-                let ours = relations.get(&(other.clone(), kept.clone())).copied().unwrap_or(0.0);
-                assert!((ours - coefficient).abs() < 1e-10, "{name}: {other} into {kept}: {ours}");
+                let ours = relations
+                    .get(&(other.clone(), kept.clone()))
+                    .copied()
+                    .unwrap_or(0.0);
+                assert!(
+                    (ours - coefficient).abs() < 1e-10,
+                    "{name}: {other} into {kept}: {ours}"
+                );
                 seen += 1;
             }
         }
-        assert_eq!(seen, relations.len(), "{name}: relations beyond the reference's");
+        assert_eq!(
+            seen,
+            relations.len(),
+            "{name}: relations beyond the reference's"
+        );
     }
 }
 
 #[test]
 fn models_equal_the_test_vectors() {
-    let (Some(geometry), Some(vectors)) =
-        (reference("mdh_geometry.json"), reference("test_vectors.json"))
-    else {
+    let (Some(geometry), Some(vectors)) = (
+        reference("mdh_geometry.json"),
+        reference("test_vectors.json"),
+    ) else {
         return;
     };
     let robots = vectors["robots"].as_object().unwrap();
@@ -200,19 +242,40 @@ fn models_equal_the_test_vectors() {
 fn evaluate(robot: &Robot, output: Output, sample: &Value) -> HashMap<(usize, usize), f64> {
     let entries = robot.entries(output);
     let values: Vec<_> = entries.iter().map(|entry| entry.value).collect();
-    let (q, qd, qdd) = (numbers(&sample["q"]), numbers(&sample["dq"]), numbers(&sample["ddq"]));
+    let (q, qd, qdd) = (
+        numbers(&sample["q"]),
+        numbers(&sample["dq"]),
+        numbers(&sample["ddq"]),
+    );
     let mut out = vec![0.0; values.len()];
-    let batch = Batch { len: 1, q: &q, qd: &qd, qdd: &qdd };
+    let batch = Batch {
+        len: 1,
+        q: &q,
+        qd: &qd,
+        qdd: &qdd,
+    };
     Tape::new(&robot.graph, &values).run(&batch, &mut out);
-    entries.iter().zip(out).map(|(entry, value)| ((entry.row, entry.column), value)).collect()
+    entries
+        .iter()
+        .zip(out)
+        .map(|(entry, value)| ((entry.row, entry.column), value))
+        .collect()
 }
 
 fn numbers(value: &Value) -> Vec<f64> {
-    value.as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect()
+    value
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|x| x.as_f64().unwrap())
+        .collect()
 }
 
 fn texts(values: &[Value]) -> Vec<String> {
-    values.iter().map(|value| value.as_str().unwrap().to_owned()).collect()
+    values
+        .iter()
+        .map(|value| value.as_str().unwrap().to_owned())
+        .collect()
 }
 
 fn sorted(mut names: Vec<String>) -> Vec<String> {
@@ -222,9 +285,10 @@ fn sorted(mut names: Vec<String>) -> Vec<String> {
 
 #[test]
 fn operation_counts_table() {
-    let (Some(geometry), Some(targets)) =
-        (reference("mdh_geometry.json"), reference("prototype_targets.json"))
-    else {
+    let (Some(geometry), Some(targets)) = (
+        reference("mdh_geometry.json"),
+        reference("prototype_targets.json"),
+    ) else {
         return;
     };
     for (name, target) in targets["robots"].as_object().unwrap() {

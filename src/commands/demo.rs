@@ -31,7 +31,13 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let spinner = Spinner::new(arguments.quiet);
     let experiment = demo::experiment()?;
     let train = std::slice::from_ref(&experiment.recording);
-    let result = identify(&robots::scara::Model, train, &[], &Options::default(), &spinner)?;
+    let result = identify(
+        &robots::scara::Model,
+        train,
+        &[],
+        &Options::default(),
+        &spinner,
+    )?;
     save(&arguments.folder, &experiment, &result)?;
     spinner.finish();
     if arguments.quiet {
@@ -41,13 +47,19 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 fn save(folder: &Path, experiment: &Experiment, result: &Identification) -> Result<(), Failure> {
-    std::fs::create_dir_all(folder)
-        .map_err(|source| Failure::Write { path: folder.to_owned(), source })?;
+    std::fs::create_dir_all(folder).map_err(|source| Failure::Write {
+        path: folder.to_owned(),
+        source,
+    })?;
     let recording = &experiment.recording;
     let mut columns: Vec<(&str, &[f64])> = vec![("t", &recording.stamps)];
     let (q, tau) = (&recording.q, recording.tau.as_deref().unwrap_or_default());
     columns.extend(["q1", "q2"].into_iter().zip(q.iter().map(Vec::as_slice)));
-    columns.extend(["tau1", "tau2"].into_iter().zip(tau.iter().map(Vec::as_slice)));
+    columns.extend(
+        ["tau1", "tau2"]
+            .into_iter()
+            .zip(tau.iter().map(Vec::as_slice)),
+    );
     log::write(&folder.join("scara.csv"), &columns)?;
     output::json(&folder.join("result.json"), result)
 }
@@ -81,8 +93,12 @@ fn text(folder: &Path, experiment: &Experiment, result: &Identification) -> Stri
         out.push('\n');
     }
     let _ = writeln!(out, "{}", "-".repeat(width));
-    footer(&mut out, "equations", result, |model| model.rows.to_string());
-    footer(&mut out, "Cond(W)", result, |model| format!("{:.1}", model.condition));
+    footer(&mut out, "equations", result, |model| {
+        model.rows.to_string()
+    });
+    footer(&mut out, "Cond(W)", result, |model| {
+        format!("{:.1}", model.condition)
+    });
     let _ = writeln!(
         out,
         "\nPaper: 800, 800 and 400 equations, Cond(W) 28, 28 and 93, errors up to 0.2, 0.6 and \

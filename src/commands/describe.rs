@@ -108,17 +108,32 @@ impl Report {
         };
         Report {
             robot: robot.mechanism.name.clone(),
-            joints: robot.mechanism.joints.iter().map(JointReport::new).collect(),
+            joints: robot
+                .mechanism
+                .joints
+                .iter()
+                .map(JointReport::new)
+                .collect(),
             standard_parameters: robot.base.standard,
             rank_gap: robot.base.gap,
-            base_parameters: robot.base.parameters.iter().map(ParameterReport::new).collect(),
+            base_parameters: robot
+                .base
+                .parameters
+                .iter()
+                .map(ParameterReport::new)
+                .collect(),
             operations: OperationsReport {
                 explicit: counts.explicit.into(),
                 implicit: counts.implicit.into(),
                 energy: counts.energy.into(),
             },
             snaps: robot.mechanism.snaps.iter().map(snap).collect(),
-            warnings: robot.description.warnings.iter().map(ToString::to_string).collect(),
+            warnings: robot
+                .description
+                .warnings
+                .iter()
+                .map(ToString::to_string)
+                .collect(),
         }
     }
 }
@@ -157,7 +172,11 @@ impl ParameterReport {
 
 impl From<Operations> for CountReport {
     fn from(count: Operations) -> CountReport {
-        CountReport { mul: count.mul, add: count.add, trig: count.trig }
+        CountReport {
+            mul: count.mul,
+            add: count.add,
+            trig: count.trig,
+        }
     }
 }
 
@@ -189,7 +208,12 @@ fn text(robot: &Robot) -> String {
 }
 
 fn joints(out: &mut String, robot: &Robot) {
-    let width = robot.mechanism.joints.iter().map(|joint| joint.name.chars().count()).max();
+    let width = robot
+        .mechanism
+        .joints
+        .iter()
+        .map(|joint| joint.name.chars().count())
+        .max();
     let width = width.unwrap_or(0).max(5);
     let _ = writeln!(
         out,
@@ -232,7 +256,11 @@ fn angle(angle: idim::codegen::expr::Angle) -> String {
 
 fn snaps(out: &mut String, robot: &Robot) {
     for snap in &robot.mechanism.snaps {
-        let _ = writeln!(out, "  taken as exact: {}: {} is {}", snap.joint, snap.from, snap.to);
+        let _ = writeln!(
+            out,
+            "  taken as exact: {}: {} is {}",
+            snap.joint, snap.from, snap.to
+        );
     }
 }
 
@@ -262,13 +290,19 @@ fn parameters(out: &mut String, robot: &Robot) {
 
 fn operations(out: &mut String, robot: &Robot) {
     let counts = robot.counts();
-    let _ = writeln!(out, "\n  operations (inertial columns)      x      +  sin/cos");
+    let _ = writeln!(
+        out,
+        "\n  operations (inertial columns)      x      +  sin/cos"
+    );
     for (name, count) in [
         ("D   explicit", counts.explicit),
         ("P+R implicit", counts.implicit),
         ("h   energy", counts.energy),
     ] {
-        let _ =
-            writeln!(out, "  {name:<30} {:>6} {:>6} {:>8}", count.mul, count.add, count.trig);
+        let _ = writeln!(
+            out,
+            "  {name:<30} {:>6} {:>6} {:>8}",
+            count.mul, count.add, count.trig
+        );
     }
 }

@@ -155,8 +155,18 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let spinner = Spinner::new(arguments.quiet);
     let model = robot::model(&arguments.robot)?;
-    let train = read(model.as_ref(), &arguments.logs, arguments.map.as_deref(), &spinner)?;
-    let validate = read(model.as_ref(), &arguments.validate, arguments.map.as_deref(), &spinner)?;
+    let train = read(
+        model.as_ref(),
+        &arguments.logs,
+        arguments.map.as_deref(),
+        &spinner,
+    )?;
+    let validate = read(
+        model.as_ref(),
+        &arguments.validate,
+        arguments.map.as_deref(),
+        &spinner,
+    )?;
     let options = arguments.choices.options();
     let result = identify(model.as_ref(), &train, &validate, &options, &spinner)?;
     if let Some(folder) = &arguments.predictions {
@@ -178,7 +188,10 @@ fn read(
     map: Option<&Path>,
     spinner: &Spinner,
 ) -> Result<Vec<Recording>, Failure> {
-    let options = ReadOptions { require_torque: true, companion: map.map(Path::to_owned) };
+    let options = ReadOptions {
+        require_torque: true,
+        companion: map.map(Path::to_owned),
+    };
     let mut recordings = Vec::with_capacity(logs.len());
     for name in logs {
         spinner.say(&format!("reading {name}"));
@@ -197,8 +210,10 @@ fn predictions(
     result: &Identification,
     folder: &Path,
 ) -> Result<(), Failure> {
-    std::fs::create_dir_all(folder)
-        .map_err(|source| Failure::Write { path: folder.to_owned(), source })?;
+    std::fs::create_dir_all(folder).map_err(|source| Failure::Write {
+        path: folder.to_owned(),
+        source,
+    })?;
     let mut seen: HashMap<&str, usize> = HashMap::new();
     for recording in logs {
         let count = seen.entry(&recording.stem).or_default();
@@ -209,13 +224,27 @@ fn predictions(
             count => format!("{}-{count}", recording.stem),
         };
         for found in &result.models {
-            let torque =
-                predict(model, recording, &found.solution(), &result.filter, found.name)?;
-            let rows: Vec<Vec<f64>> =
-                torque.iter().map(|series| log::onto_stamps(recording, series)).collect();
-            let names: Vec<String> = (1..=rows.len()).map(|joint| format!("tau{joint}")).collect();
+            let torque = predict(
+                model,
+                recording,
+                &found.solution(),
+                &result.filter,
+                found.name,
+            )?;
+            let rows: Vec<Vec<f64>> = torque
+                .iter()
+                .map(|series| log::onto_stamps(recording, series))
+                .collect();
+            let names: Vec<String> = (1..=rows.len())
+                .map(|joint| format!("tau{joint}"))
+                .collect();
             let mut columns: Vec<(&str, &[f64])> = vec![("t", &recording.stamps)];
-            columns.extend(names.iter().map(String::as_str).zip(rows.iter().map(Vec::as_slice)));
+            columns.extend(
+                names
+                    .iter()
+                    .map(String::as_str)
+                    .zip(rows.iter().map(Vec::as_slice)),
+            );
             let file = format!("{stem}_{}.csv.gz", found.name.name());
             log::write(&folder.join(file), &columns)?;
         }

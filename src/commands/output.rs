@@ -14,9 +14,10 @@ use super::Failure;
 pub fn print(text: &str) -> Result<(), Failure> {
     let mut out = std::io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
-        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
-            Err(Failure::Write { path: "standard output".into(), source: error })
-        }
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Err(Failure::Write {
+            path: "standard output".into(),
+            source: error,
+        }),
         _ => Ok(()),
     }
 }
@@ -26,10 +27,15 @@ pub fn print(text: &str) -> Result<(), Failure> {
 /// # Errors
 /// [`Failure::Write`] when the folder or the file cannot be written.
 pub fn write_whole(path: &Path, text: &str) -> Result<(), Failure> {
-    let failed = |source: std::io::Error| Failure::Write { path: path.to_owned(), source };
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
-    let mut file = tempfile::NamedTempFile::new_in(folder.unwrap_or(Path::new(".")))
-        .map_err(failed)?;
+    let failed = |source: std::io::Error| Failure::Write {
+        path: path.to_owned(),
+        source,
+    };
+    let folder = path
+        .parent()
+        .filter(|folder| !folder.as_os_str().is_empty());
+    let mut file =
+        tempfile::NamedTempFile::new_in(folder.unwrap_or(Path::new("."))).map_err(failed)?;
     file.write_all(text.as_bytes()).map_err(failed)?;
     readable_by_all(file.as_file()).map_err(failed)?;
     file.persist(path).map_err(|error| failed(error.error))?;
@@ -56,7 +62,11 @@ pub fn json(path: &Path, value: &impl Serialize) -> Result<(), Failure> {
     let mut text = serde_json::to_string_pretty(value)
         .map_err(|error| Failure::Defect(format!("a result is not JSON: {error}")))?;
     text.push('\n');
-    if path == Path::new("-") { print(&text) } else { write_whole(path, &text) }
+    if path == Path::new("-") {
+        print(&text)
+    } else {
+        write_whole(path, &text)
+    }
 }
 
 /// Whether `--json -` claims standard output for itself.

@@ -17,7 +17,11 @@ impl Spinner {
     /// A spinner; silent if `quiet` or if standard error is no terminal.
     pub fn new(quiet: bool) -> Spinner {
         let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden());
-        Spinner { bar, start: Instant::now(), quiet }
+        Spinner {
+            bar,
+            start: Instant::now(),
+            quiet,
+        }
     }
 
     /// A step begins.

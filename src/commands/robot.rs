@@ -16,7 +16,10 @@ fn built_in(name: &str) -> Option<&'static robots::Robot> {
 
 fn unknown(name: &str) -> Failure {
     let known = robots::ALL.iter().map(|robot| robot.name).collect();
-    Failure::UnknownRobot { name: name.to_owned(), known }
+    Failure::UnknownRobot {
+        name: name.to_owned(),
+        known,
+    }
 }
 
 /// Whether the argument means a file rather than a built-in robot.

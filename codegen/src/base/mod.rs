@@ -100,5 +100,9 @@ pub fn parameters(
     let count = standard.len();
     let mut parameters = regroup::regroup(&samples, &split, standard);
     scale::apply(graph, &mut parameters, scaled)?;
-    Ok(BaseParameters { parameters, standard: count, gap: split.gap })
+    Ok(BaseParameters {
+        parameters,
+        standard: count,
+        gap: split.gap,
+    })
 }

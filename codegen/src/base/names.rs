@@ -21,15 +21,13 @@ pub fn priority(mechanism: &Mechanism, standard: &[Standard]) -> Vec<usize> {
         let from_tip = links - parameter.link;
         let class = match parameter.kind {
             ParameterKind::Friction | ParameterKind::Effect => 0,
-            ParameterKind::Inertial(index) => {
-                match mechanism.joints[parameter.link].kind {
-                    JointKind::Revolute if [YY, MZ, M].contains(&index) => 3,
-                    JointKind::Revolute => 1,
-                    JointKind::Prismatic if index == M => 1,
-                    JointKind::Prismatic if index < 6 => 3,
-                    JointKind::Prismatic => 2,
-                }
-            }
+            ParameterKind::Inertial(index) => match mechanism.joints[parameter.link].kind {
+                JointKind::Revolute if [YY, MZ, M].contains(&index) => 3,
+                JointKind::Revolute => 1,
+                JointKind::Prismatic if index == M => 1,
+                JointKind::Prismatic if index < 6 => 3,
+                JointKind::Prismatic => 2,
+            },
             ParameterKind::Drive => 4,
         };
         (class, from_tip, column)
@@ -80,7 +78,11 @@ mod tests {
 
     #[test]
     fn relations_read_like_sums() {
-        let terms = [(1.0, "ZZ1".into()), (1.0, "IA1".into()), (-0.25, "M2".into())];
+        let terms = [
+            (1.0, "ZZ1".into()),
+            (1.0, "IA1".into()),
+            (-0.25, "M2".into()),
+        ];
         assert_eq!(relation(&terms), "ZZ1 + IA1 - 0.25*M2");
     }
 }

@@ -28,17 +28,30 @@ pub fn split(w: &DMatrix<f64>, priority: &[usize], all: &[Standard]) -> Result<S
     let norms: Vec<f64> = w.column_iter().map(|column| column.norm()).collect();
     let largest = norms.iter().fold(0.0, |a: f64, &b| a.max(b));
     // A column without effect is rounding at most.
-    let live: Vec<usize> =
-        priority.iter().copied().filter(|&column| norms[column] > 1e-10 * largest).collect();
-    let columns: Vec<DVector<f64>> =
-        live.iter().map(|&column| w.column(column) / norms[column]).collect();
+    let live: Vec<usize> = priority
+        .iter()
+        .copied()
+        .filter(|&column| norms[column] > 1e-10 * largest)
+        .collect();
+    let columns: Vec<DVector<f64>> = live
+        .iter()
+        .map(|&column| w.column(column) / norms[column])
+        .collect();
     if columns.is_empty() {
-        return Ok(Split { kept: vec![], dependent: vec![], gap: f64::INFINITY });
+        return Ok(Split {
+            kept: vec![],
+            dependent: vec![],
+            gap: f64::INFINITY,
+        });
     }
     let scaled = DMatrix::from_columns(&columns);
     let (rank, gap, threshold) = numeric_rank(&scaled);
     let residuals = orthogonalise(&columns, threshold);
-    let mut split = Split { kept: vec![], dependent: vec![], gap };
+    let mut split = Split {
+        kept: vec![],
+        dependent: vec![],
+        gap,
+    };
     for (&column, &residual) in live.iter().zip(&residuals) {
         if residual > threshold {
             split.kept.push(column);
@@ -98,5 +111,9 @@ fn near(live: &[usize], residuals: &[f64], threshold: f64, all: &[Standard]) -> 
     let mut order: Vec<usize> = (0..live.len()).collect();
     let distance = |index: usize| (residuals[index].max(f64::EPSILON) / threshold).ln().abs();
     order.sort_by(|&a, &b| distance(a).total_cmp(&distance(b)));
-    order.into_iter().take(6).map(|index| all[live[index]].name.clone()).collect()
+    order
+        .into_iter()
+        .take(6)
+        .map(|index| all[live[index]].name.clone())
+        .collect()
 }

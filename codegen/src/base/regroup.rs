@@ -30,9 +30,11 @@ pub fn regroup(w: &DMatrix<f64>, split: &Split, standard: Vec<Standard>) -> Vec<
                 }
             }
             others.sort_by_key(|&(dependent, _)| dependent);
-            relation.extend(others.into_iter().map(|(dependent, coefficient)| {
-                (coefficient, standard[dependent].name.clone())
-            }));
+            relation.extend(
+                others.into_iter().map(|(dependent, coefficient)| {
+                    (coefficient, standard[dependent].name.clone())
+                }),
+            );
             BaseParameter {
                 name: names::base(&parameter.name, relation.len() > 1),
                 unit: parameter.unit.clone(),

@@ -22,7 +22,11 @@ pub fn explicit(graph: &Graph, mechanism: &Mechanism, standard: &[Standard]) -> 
         .iter()
         .enumerate()
         .flat_map(|(column, parameter)| {
-            parameter.columns.explicit.iter().map(move |&(joint, entry)| (joint, column, entry))
+            parameter
+                .columns
+                .explicit
+                .iter()
+                .map(move |&(joint, entry)| (joint, column, entry))
         })
         .collect();
     let outputs: Vec<Expr> = entries.iter().map(|&(_, _, entry)| entry).collect();
@@ -53,7 +57,12 @@ impl States {
         let mut generator = Pcg64Mcg::new(SEED);
         // 53 bits fill the mantissa; the range is [-1, 1).
         let mut unit = || (generator.next_u64() >> 11) as f64 / (1u64 << 52) as f64 - 1.0;
-        let mut states = States { len, q: vec![], qd: vec![], qdd: vec![] };
+        let mut states = States {
+            len,
+            q: vec![],
+            qd: vec![],
+            qdd: vec![],
+        };
         for joint in &mechanism.joints {
             let range = match joint.kind {
                 JointKind::Revolute => std::f64::consts::PI,
@@ -70,6 +79,11 @@ impl States {
 
     /// For a tape.
     pub fn batch(&self) -> Batch<'_> {
-        Batch { len: self.len, q: &self.q, qd: &self.qd, qdd: &self.qdd }
+        Batch {
+            len: self.len,
+            q: &self.q,
+            qd: &self.qd,
+            qdd: &self.qdd,
+        }
     }
 }

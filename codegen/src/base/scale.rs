@@ -14,7 +14,12 @@ pub fn apply(
     scaled: &[ScaledParameter],
 ) -> Result<(), BaseError> {
     for wish in scaled {
-        let known = || parameters.iter().map(|parameter| parameter.name.clone()).collect();
+        let known = || {
+            parameters
+                .iter()
+                .map(|parameter| parameter.name.clone())
+                .collect()
+        };
         let index = parameters
             .iter()
             .position(|p| p.name == wish.parameter || p.relation[0].1 == wish.parameter)
@@ -37,15 +42,21 @@ pub fn apply(
 fn divide(graph: &mut Graph, parameter: &mut BaseParameter, factor: f64) {
     let name = parameter.name.to_lowercase();
     let columns = &mut parameter.columns;
-    let lists =
-        [("d", &mut columns.explicit), ("p", &mut columns.momentum), ("r", &mut columns.rest)];
+    let lists = [
+        ("d", &mut columns.explicit),
+        ("p", &mut columns.momentum),
+        ("r", &mut columns.rest),
+    ];
     for (prefix, entries) in lists {
         for (joint, entry) in entries {
             *entry = scale(graph, *entry, 1.0 / factor);
             graph.name(*entry, &format!("{prefix}{}_{name}", *joint + 1));
         }
     }
-    for entry in [&mut columns.energy, &mut columns.power].into_iter().flatten() {
+    for entry in [&mut columns.energy, &mut columns.power]
+        .into_iter()
+        .flatten()
+    {
         *entry = scale(graph, *entry, 1.0 / factor);
     }
 }

@@ -31,13 +31,22 @@ fn unit(graph: &Graph, index: usize) -> Vec3 {
 pub fn wrench(graph: &mut Graph, m: &Motion, index: usize) -> Screw {
     let none = zero(graph);
     match index {
-        0..=5 => Screw { angular: euler(graph, m, index), linear: none },
+        0..=5 => Screw {
+            angular: euler(graph, m, index),
+            linear: none,
+        },
         6..=8 => {
             let e = unit(graph, index);
             let force = m.u.map(|row| row[index - 6]);
-            Screw { angular: cross(graph, e, m.a), linear: force }
+            Screw {
+                angular: cross(graph, e, m.a),
+                linear: force,
+            }
         }
-        _ => Screw { angular: none, linear: m.a },
+        _ => Screw {
+            angular: none,
+            linear: m.a,
+        },
     }
 }
 
@@ -54,12 +63,21 @@ fn euler(graph: &mut Graph, m: &Motion, index: usize) -> Vec3 {
 pub fn momentum(graph: &mut Graph, m: &Motion, index: usize) -> Screw {
     let none = zero(graph);
     match index {
-        0..=5 => Screw { angular: tensor(graph, index, m.w), linear: none },
+        0..=5 => Screw {
+            angular: tensor(graph, index, m.w),
+            linear: none,
+        },
         6..=8 => {
             let e = unit(graph, index);
-            Screw { angular: cross(graph, e, m.v), linear: cross(graph, m.w, e) }
+            Screw {
+                angular: cross(graph, e, m.v),
+                linear: cross(graph, m.w, e),
+            }
         }
-        _ => Screw { angular: none, linear: m.v },
+        _ => Screw {
+            angular: none,
+            linear: m.v,
+        },
     }
 }
 
@@ -68,11 +86,20 @@ pub fn weight(graph: &mut Graph, m: &Motion, index: usize) -> Screw {
     let none = zero(graph);
     let up = m.g.map(|x| -x);
     match index {
-        0..=5 => Screw { angular: none, linear: none },
+        0..=5 => Screw {
+            angular: none,
+            linear: none,
+        },
         6..=8 => {
             let e = unit(graph, index);
-            Screw { angular: cross(graph, e, up), linear: none }
+            Screw {
+                angular: cross(graph, e, up),
+                linear: none,
+            }
         }
-        _ => Screw { angular: none, linear: up },
+        _ => Screw {
+            angular: none,
+            linear: up,
+        },
     }
 }

@@ -32,7 +32,10 @@ pub fn columns(graph: &mut Graph, kinds: &[JointKind], effect: &Effect) -> Vec<S
         EffectKind::RotorInertia => rotor_inertia(kinds, effect),
         EffectKind::WristCoupling => wrist_coupling(graph, kinds, effect),
     };
-    torques.into_iter().map(|torque| torque.standard(graph)).collect()
+    torques
+        .into_iter()
+        .map(|torque| torque.standard(graph))
+        .collect()
 }
 
 fn by_kind(kind: JointKind, revolute: &'static str, prismatic: &'static str) -> &'static str {

@@ -24,8 +24,10 @@ pub fn columns(graph: &mut Graph, motions: &Motions, link: usize) -> Vec<Pair> {
                 let kinetic = pairing(graph, &mover.rate, &momentum);
                 let potential = pairing(graph, &mover.screw, &weight);
                 let r = graph.sub(potential, kinetic);
-                pair.0.extend((!graph.is_zero(p)).then_some((mover.joint, p)));
-                pair.1.extend((!graph.is_zero(r)).then_some((mover.joint, r)));
+                pair.0
+                    .extend((!graph.is_zero(p)).then_some((mover.joint, p)));
+                pair.1
+                    .extend((!graph.is_zero(r)).then_some((mover.joint, r)));
             }
             pair
         })

@@ -7,9 +7,9 @@
 
 pub mod body;
 pub mod effects;
+pub mod energy;
 pub mod explicit;
 pub mod implicit;
-pub mod energy;
 pub mod motion;
 pub mod names;
 pub mod vector;
@@ -84,7 +84,9 @@ pub fn standard(graph: &mut Graph, mechanism: &Mechanism) -> StandardModel {
     }
     let kinds: Vec<JointKind> = mechanism.joints.iter().map(|joint| joint.kind).collect();
     for effect in &mechanism.effects {
-        model.parameters.extend(effects::columns(graph, &kinds, effect));
+        model
+            .parameters
+            .extend(effects::columns(graph, &kinds, effect));
     }
     model
 }
@@ -110,7 +112,13 @@ fn inertial(graph: &mut Graph, motions: &Motions, link: usize, parameters: &mut 
             meaning: meaning(index, link),
             link,
             kind: ParameterKind::Inertial(index),
-            columns: Columns { explicit, momentum, rest, energy, power: None },
+            columns: Columns {
+                explicit,
+                momentum,
+                rest,
+                energy,
+                power: None,
+            },
         });
     }
 }

@@ -53,7 +53,12 @@ impl Motions {
     pub fn push(&mut self, graph: &mut Graph, mechanism: &Mechanism) {
         let index = self.links.len();
         let joint = &mechanism.joints[index];
-        let mut step = Step { graph, rotator: &mut self.rotator, joint, index };
+        let mut step = Step {
+            graph,
+            rotator: &mut self.rotator,
+            joint,
+            index,
+        };
         let parent = match joint.parent {
             Some(parent) => self.links[parent],
             None => step.base(),
@@ -102,7 +107,15 @@ impl Step<'_> {
         let none = zero(self.graph);
         let a = g.map(|x| -x);
         let potential = self.graph.zero();
-        Motion { w: none, wd: none, a, u: [none; 3], v: none, g, potential }
+        Motion {
+            w: none,
+            wd: none,
+            a,
+            u: [none; 3],
+            v: none,
+            g,
+            potential,
+        }
     }
 
     fn motion(&mut self, parent: &Motion) -> Motion {
@@ -186,15 +199,31 @@ impl Step<'_> {
         let turning = [m.w[1], -m.w[0], none];
         let (screw, rate) = match self.joint.kind {
             JointKind::Revolute => (
-                Screw { angular: z, linear: still },
-                Screw { angular: turning, linear: [m.v[1], -m.v[0], none] },
+                Screw {
+                    angular: z,
+                    linear: still,
+                },
+                Screw {
+                    angular: turning,
+                    linear: [m.v[1], -m.v[0], none],
+                },
             ),
             JointKind::Prismatic => (
-                Screw { angular: still, linear: z },
-                Screw { angular: still, linear: turning },
+                Screw {
+                    angular: still,
+                    linear: z,
+                },
+                Screw {
+                    angular: still,
+                    linear: turning,
+                },
             ),
         };
-        Mover { joint: self.index, screw, rate }
+        Mover {
+            joint: self.index,
+            screw,
+            rate,
+        }
     }
 
     /// A motion screw of the antecedent's frame in this one.
@@ -229,8 +258,20 @@ fn u(graph: &mut Graph, w: Vec3, wd: Vec3) -> [Vec3; 3] {
     let (xx, yy, zz) = (product(0, 0), product(1, 1), product(2, 2));
     let (xy, xz, yz) = (product(0, 1), product(0, 2), product(1, 2));
     [
-        [-graph.add(yy, zz), graph.sub(xy, wd[2]), graph.add(xz, wd[1])],
-        [graph.add(xy, wd[2]), -graph.add(xx, zz), graph.sub(yz, wd[0])],
-        [graph.sub(xz, wd[1]), graph.add(yz, wd[0]), -graph.add(xx, yy)],
+        [
+            -graph.add(yy, zz),
+            graph.sub(xy, wd[2]),
+            graph.add(xz, wd[1]),
+        ],
+        [
+            graph.add(xy, wd[2]),
+            -graph.add(xx, zz),
+            graph.sub(yz, wd[0]),
+        ],
+        [
+            graph.sub(xz, wd[1]),
+            graph.add(yz, wd[0]),
+            -graph.add(xx, yy),
+        ],
     ]
 }

@@ -21,12 +21,20 @@ pub fn zero(graph: &Graph) -> Vec3 {
 
 /// `a + b`.
 pub fn add(graph: &mut Graph, a: Vec3, b: Vec3) -> Vec3 {
-    [graph.add(a[0], b[0]), graph.add(a[1], b[1]), graph.add(a[2], b[2])]
+    [
+        graph.add(a[0], b[0]),
+        graph.add(a[1], b[1]),
+        graph.add(a[2], b[2]),
+    ]
 }
 
 /// `a . b`.
 pub fn dot(graph: &mut Graph, a: Vec3, b: Vec3) -> Expr {
-    let products = [graph.mul(a[0], b[0]), graph.mul(a[1], b[1]), graph.mul(a[2], b[2])];
+    let products = [
+        graph.mul(a[0], b[0]),
+        graph.mul(a[1], b[1]),
+        graph.mul(a[2], b[2]),
+    ];
     graph.sum(&products)
 }
 
@@ -59,8 +67,12 @@ pub fn into_frame(
         (y, z)
     } else {
         let (s, c) = (graph.constant(s), graph.constant(c));
-        let (cy, sz, sy, cz) =
-            (graph.mul(c, y), graph.mul(s, z), graph.mul(s, y), graph.mul(c, z));
+        let (cy, sz, sy, cz) = (
+            graph.mul(c, y),
+            graph.mul(s, z),
+            graph.mul(s, y),
+            graph.mul(c, z),
+        );
         (graph.add(cy, sz), graph.sub(cz, sy))
     };
     let (x, y) = about_z(graph, rotator, (x, y), theta);

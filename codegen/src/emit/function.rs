@@ -25,11 +25,14 @@ pub fn body(robot: &Robot, targets: &[Target]) -> TokenStream {
         .flat_map(|target| {
             let argument = format_ident!("{}", target.argument);
             let matrix = !matches!(target.output, Output::Energy | Output::Power);
-            robot.entries(target.output).into_iter().map(move |entry| Store {
-                argument: argument.clone(),
-                matrix,
-                entry,
-            })
+            robot
+                .entries(target.output)
+                .into_iter()
+                .map(move |entry| Store {
+                    argument: argument.clone(),
+                    matrix,
+                    entry,
+                })
         })
         .collect();
     let outputs: Vec<Expr> = stores.iter().map(|store| store.entry.value).collect();
@@ -39,7 +42,13 @@ pub fn body(robot: &Robot, targets: &[Target]) -> TokenStream {
     let constants = constants(robot, &needed, &mut writer);
     let mut statements = TokenStream::new();
     for section in sections(robot) {
-        statements.extend(self::section(robot, &section, &needed, &stores, &mut writer));
+        statements.extend(self::section(
+            robot,
+            &section,
+            &needed,
+            &stores,
+            &mut writer,
+        ));
     }
     quote! { #constants #statements }
 }
@@ -64,7 +73,11 @@ fn sections(robot: &Robot) -> Vec<Section> {
     let mut sections: Vec<Section> = links
         .map(|(link, joint)| format!("Link {}, carried by {}.", link + 1, joint.name))
         .chain(["Drives, friction and other effects.".to_owned()])
-        .map(|title| Section { title, nodes: vec![], columns: vec![] })
+        .map(|title| Section {
+            title,
+            nodes: vec![],
+            columns: vec![],
+        })
         .collect();
     let places = places(robot);
     for (node, &place) in places.iter().enumerate() {
@@ -117,7 +130,10 @@ fn section(
             statements.extend(writer.binding(node));
         }
     }
-    for store in stores.iter().filter(|store| section.columns.contains(&store.entry.column)) {
+    for store in stores
+        .iter()
+        .filter(|store| section.columns.contains(&store.entry.column))
+    {
         let value = writer.value(store.entry.value);
         let (argument, row, column) = (
             &store.argument,

@@ -71,7 +71,11 @@ pub fn trig(function: &str, angle: &AngleSum) -> String {
 fn constant(graph: &Graph, node: usize, value: f64) -> String {
     // One node serves every meaning of a value; these two are hardly ever lengths.
     if value == 2.0 || value == 0.5 {
-        return if value == 2.0 { "two".into() } else { "half".into() };
+        return if value == 2.0 {
+            "two".into()
+        } else {
+            "half".into()
+        };
     }
     if let Some(name) = graph.name_of(node) {
         return name.to_owned();

@@ -51,7 +51,11 @@ impl<'a> Writer<'a> {
                 size[index] = 0;
             }
         }
-        Writer { graph, named, names: Names::default() }
+        Writer {
+            graph,
+            named,
+            names: Names::default(),
+        }
     }
 
     /// Whether a node has a statement of its own.
@@ -115,7 +119,13 @@ impl<'a> Writer<'a> {
     fn node(&mut self, node: usize) -> (TokenStream, Level) {
         match self.graph.nodes()[node] {
             Node::Add(a, b) => {
-                let (a, b) = (self.signed(a).0, self.signed(b).0);
+                let a = self.signed(a).0;
+                let (b, level) = self.signed(b);
+                let b = if level == Level::Sum {
+                    quote! { (#b) }
+                } else {
+                    b
+                };
                 (quote! { #a + #b }, Level::Sum)
             }
             Node::Sub(a, b) => self.difference(a, b),
@@ -141,7 +151,11 @@ impl<'a> Writer<'a> {
     fn difference(&mut self, a: Expr, b: Expr) -> (TokenStream, Level) {
         let a = self.signed(a).0;
         let (b, level) = self.signed(b);
-        let b = if level == Level::Sum { quote! { (#b) } } else { b };
+        let b = if level == Level::Sum {
+            quote! { (#b) }
+        } else {
+            b
+        };
         (quote! { #a - #b }, Level::Sum)
     }
 

@@ -101,8 +101,12 @@ pub fn settings(robot: &Robot) -> TokenStream {
     let spec = &robot.description.identify;
     let number = |value: Option<f64>| option(value.map(Literal::f64_unsuffixed));
     let count = |value: Option<usize>| option(value.map(Literal::usize_unsuffixed));
-    let (fq_hz, order, nd, trim) =
-        (number(spec.fq_hz), count(spec.order), count(spec.nd), count(spec.trim));
+    let (fq_hz, order, nd, trim) = (
+        number(spec.fq_hz),
+        count(spec.order),
+        count(spec.nd),
+        count(spec.trim),
+    );
     let border = option(spec.border.map(|(start, end)| {
         let [start, end] = [start, end].map(Literal::usize_unsuffixed);
         quote! { (#start, #end) }
@@ -122,7 +126,13 @@ pub fn settings(robot: &Robot) -> TokenStream {
     }));
     let prefilter_torque = option(spec.prefilter_torque.map(|yes| quote! { #yes }));
     let gains = robot.description.drives.gains.iter().copied().map(signed);
-    let coupling = robot.description.drives.coupling.iter().copied().map(signed);
+    let coupling = robot
+        .description
+        .drives
+        .coupling
+        .iter()
+        .copied()
+        .map(signed);
     quote! {
         settings::Settings {
             fq_hz: #fq_hz,
@@ -145,7 +155,11 @@ pub fn settings(robot: &Robot) -> TokenStream {
 /// A literal with its sign as an operator of its own: a negative literal panics.
 fn signed(value: f64) -> TokenStream {
     let size = Literal::f64_unsuffixed(value.abs());
-    if value < 0.0 { quote! { -#size } } else { quote! { #size } }
+    if value < 0.0 {
+        quote! { -#size }
+    } else {
+        quote! { #size }
+    }
 }
 
 fn option(value: Option<impl quote::ToTokens>) -> TokenStream {

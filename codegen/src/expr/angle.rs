@@ -15,7 +15,10 @@ pub struct Angle {
 
 impl Angle {
     /// The zero angle.
-    pub const ZERO: Angle = Angle { quarters: 0, rest: 0.0 };
+    pub const ZERO: Angle = Angle {
+        quarters: 0,
+        rest: 0.0,
+    };
 
     /// Below this distance from a multiple of pi/2 (rad) an angle is that multiple: far above the
     /// rounding of composed rotations, far below what a description can mean.
@@ -23,20 +26,34 @@ impl Angle {
 
     /// A number of quarter turns.
     pub fn quarters(quarters: i32) -> Angle {
-        Angle { quarters: quarters.rem_euclid(4), rest: 0.0 }
+        Angle {
+            quarters: quarters.rem_euclid(4),
+            rest: 0.0,
+        }
     }
 
     /// An angle in rad.
     pub fn radians(value: f64) -> Angle {
         let quarters = (value / FRAC_PI_2).round();
         let rest = value - quarters * FRAC_PI_2;
-        let rest = if rest.abs() < Self::ROUNDING { 0.0 } else { rest };
-        Angle { quarters: (quarters.rem_euclid(4.0)) as i32, rest }
+        let rest = if rest.abs() < Self::ROUNDING {
+            0.0
+        } else {
+            rest
+        };
+        Angle {
+            quarters: (quarters.rem_euclid(4.0)) as i32,
+            rest,
+        }
     }
 
     /// The same angle as a multiple of pi/2 if it is within `tolerance` (rad) of one.
     pub fn snapped(self, tolerance: f64) -> Angle {
-        if self.rest.abs() <= tolerance { Angle { rest: 0.0, ..self } } else { self }
+        if self.rest.abs() <= tolerance {
+            Angle { rest: 0.0, ..self }
+        } else {
+            self
+        }
     }
 
     /// Distance to the nearest multiple of pi/2, rad.
@@ -51,9 +68,17 @@ impl Angle {
 
     /// Value in (-pi, pi], rad.
     pub fn value(self) -> f64 {
-        let quarters = if self.quarters == 3 { -1 } else { self.quarters };
+        let quarters = if self.quarters == 3 {
+            -1
+        } else {
+            self.quarters
+        };
         let value = f64::from(quarters) * FRAC_PI_2 + self.rest;
-        if value > std::f64::consts::PI { value - 4.0 * FRAC_PI_2 } else { value }
+        if value > std::f64::consts::PI {
+            value - 4.0 * FRAC_PI_2
+        } else {
+            value
+        }
     }
 
     /// Whether it is a multiple of a full turn.
@@ -63,7 +88,11 @@ impl Angle {
 
     /// Sine and cosine, exact for right angles.
     pub fn sin_cos(self) -> (f64, f64) {
-        let (s, c) = if self.rest == 0.0 { (0.0, 1.0) } else { self.rest.sin_cos() };
+        let (s, c) = if self.rest == 0.0 {
+            (0.0, 1.0)
+        } else {
+            self.rest.sin_cos()
+        };
         match self.quarters {
             0 => (s, c),
             1 => (c, -s),
@@ -88,14 +117,20 @@ impl std::ops::Add for Angle {
     type Output = Angle;
     fn add(self, other: Angle) -> Angle {
         let sum = Angle::radians(self.rest + other.rest);
-        Angle { quarters: (sum.quarters + self.quarters + other.quarters).rem_euclid(4), ..sum }
+        Angle {
+            quarters: (sum.quarters + self.quarters + other.quarters).rem_euclid(4),
+            ..sum
+        }
     }
 }
 
 impl std::ops::Neg for Angle {
     type Output = Angle;
     fn neg(self) -> Angle {
-        Angle { quarters: (-self.quarters).rem_euclid(4), rest: -self.rest }
+        Angle {
+            quarters: (-self.quarters).rem_euclid(4),
+            rest: -self.rest,
+        }
     }
 }
 
@@ -111,12 +146,18 @@ pub struct AngleSum {
 impl AngleSum {
     /// The angle of one joint plus a constant.
     pub fn joint(joint: usize, offset: Angle) -> AngleSum {
-        AngleSum { terms: vec![(joint, 1)], offset }
+        AngleSum {
+            terms: vec![(joint, 1)],
+            offset,
+        }
     }
 
     /// A constant.
     pub fn constant(offset: Angle) -> AngleSum {
-        AngleSum { terms: Vec::new(), offset }
+        AngleSum {
+            terms: Vec::new(),
+            offset,
+        }
     }
 
     /// The sum of two sums; no joint of one may occur in the other with the same sign.
@@ -130,13 +171,20 @@ impl AngleSum {
         }
         terms.retain(|&(_, sign)| sign != 0);
         terms.sort_unstable();
-        AngleSum { terms, offset: self.offset + other.offset }
+        AngleSum {
+            terms,
+            offset: self.offset + other.offset,
+        }
     }
 
     /// The opposite angle.
     pub fn negated(&self) -> AngleSum {
         AngleSum {
-            terms: self.terms.iter().map(|&(joint, sign)| (joint, -sign)).collect(),
+            terms: self
+                .terms
+                .iter()
+                .map(|&(joint, sign)| (joint, -sign))
+                .collect(),
             offset: -self.offset,
         }
     }

@@ -28,11 +28,17 @@ impl Expr {
 
     /// The same node without its sign.
     pub fn positive(self) -> Expr {
-        Expr { negative: false, ..self }
+        Expr {
+            negative: false,
+            ..self
+        }
     }
 
     fn signed(self, negative: bool) -> Expr {
-        Expr { negative: self.negative ^ negative, ..self }
+        Expr {
+            negative: self.negative ^ negative,
+            ..self
+        }
     }
 }
 
@@ -106,7 +112,10 @@ impl Default for Graph {
 impl Graph {
     /// An empty graph.
     pub fn new() -> Graph {
-        let placeholder = Expr { node: 0, negative: false };
+        let placeholder = Expr {
+            node: 0,
+            negative: false,
+        };
         let mut graph = Graph {
             nodes: Vec::new(),
             known: HashMap::new(),
@@ -138,12 +147,17 @@ impl Graph {
     /// Says what a value is, for readers of emitted code; the first name stays. A negated value
     /// gets the name with `neg_` before it, since the node is the positive one.
     pub fn name(&mut self, x: Expr, name: &str) {
-        let leaf = matches!(self.nodes[x.node()], Node::Input(_) | Node::Sin(_) | Node::Cos(_));
+        let leaf = matches!(
+            self.nodes[x.node()],
+            Node::Input(_) | Node::Sin(_) | Node::Cos(_)
+        );
         if leaf || x.node == self.zero.node || x.node == self.one.node {
             return;
         }
         let prefix = if x.negative { "neg_" } else { "" };
-        self.names.entry(x.node).or_insert_with(|| format!("{prefix}{name}"));
+        self.names
+            .entry(x.node)
+            .or_insert_with(|| format!("{prefix}{name}"));
     }
 
     /// What the positive node of an expression was named.
@@ -182,7 +196,8 @@ impl Graph {
         if value == 0.0 || value.is_nan() {
             return self.zero;
         }
-        self.intern(Node::Constant(value.abs().to_bits())).signed(value < 0.0)
+        self.intern(Node::Constant(value.abs().to_bits()))
+            .signed(value < 0.0)
     }
 
     /// An input.
@@ -203,7 +218,10 @@ impl Graph {
         }
         let rest = Angle::radians(angle.offset.rest());
         let quarters = (angle.offset + -rest).right().unwrap_or(0);
-        let index = self.angle_index(AngleSum { terms: angle.terms.clone(), offset: rest });
+        let index = self.angle_index(AngleSum {
+            terms: angle.terms.clone(),
+            offset: rest,
+        });
         let s = self.intern(Node::Sin(index));
         let c = self.intern(Node::Cos(index));
         match quarters {
@@ -290,7 +308,9 @@ impl Graph {
 
     /// `factor * (constant * x)` as one product.
     fn absorb(&mut self, factor: f64, product: Expr) -> Option<Expr> {
-        let Node::Mul(a, b) = self.nodes[product.node()] else { return None };
+        let Node::Mul(a, b) = self.nodes[product.node()] else {
+            return None;
+        };
         let (known, other) = match (self.value(a), self.value(b)) {
             (Some(known), _) => (known, b),
             (_, Some(known)) => (known, a),
@@ -308,7 +328,9 @@ impl Graph {
 
     /// The sum of several terms.
     pub fn sum(&mut self, terms: &[Expr]) -> Expr {
-        terms.iter().fold(self.zero, |sum, &term| self.add(sum, term))
+        terms
+            .iter()
+            .fold(self.zero, |sum, &term| self.add(sum, term))
     }
 
     /// A function of `x`; the sign of the operand is pulled out.
@@ -317,7 +339,8 @@ impl Graph {
             return self.zero;
         }
         let odd = function != Function::Abs;
-        self.intern(Node::Call(function, x.positive())).signed(odd && x.negative)
+        self.intern(Node::Call(function, x.positive()))
+            .signed(odd && x.negative)
     }
 
     fn intern(&mut self, node: Node) -> Expr {
@@ -326,7 +349,10 @@ impl Graph {
         if index == next {
             self.nodes.push(node);
         }
-        Expr { node: index, negative: false }
+        Expr {
+            node: index,
+            negative: false,
+        }
     }
 }
 
@@ -364,8 +390,14 @@ mod tests {
     fn sines_of_shifted_and_negated_angles_share_nodes() {
         let mut graph = Graph::new();
         let (s, c) = graph.sin_cos(&AngleSum::joint(0, Angle::ZERO));
-        assert_eq!(graph.sin_cos(&AngleSum::joint(0, Angle::quarters(1))), (c, -s));
-        assert_eq!(graph.sin_cos(&AngleSum::joint(0, Angle::quarters(2))), (-s, -c));
+        assert_eq!(
+            graph.sin_cos(&AngleSum::joint(0, Angle::quarters(1))),
+            (c, -s)
+        );
+        assert_eq!(
+            graph.sin_cos(&AngleSum::joint(0, Angle::quarters(2))),
+            (-s, -c)
+        );
         let reflected = AngleSum::joint(0, Angle::ZERO).negated();
         assert_eq!(graph.sin_cos(&reflected), (-s, c));
     }
@@ -374,7 +406,10 @@ mod tests {
     fn odd_functions_pull_the_sign_out_and_even_ones_drop_it() {
         let mut graph = Graph::new();
         let (a, _) = inputs(&mut graph);
-        assert_eq!(graph.call(Function::Sign, -a), -graph.call(Function::Sign, a));
+        assert_eq!(
+            graph.call(Function::Sign, -a),
+            -graph.call(Function::Sign, a)
+        );
         assert_eq!(graph.call(Function::Abs, -a), graph.call(Function::Abs, a));
     }
 }

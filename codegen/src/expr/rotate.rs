@@ -51,7 +51,10 @@ impl Rotator {
         }
         let mirrored = self.origins.get(&(x, -y))?;
         let (ux, uy) = mirrored.turned;
-        Some(Origin { turned: (ux, -uy), angle: mirrored.angle.negated() })
+        Some(Origin {
+            turned: (ux, -uy),
+            angle: mirrored.angle.negated(),
+        })
     }
 
     fn turn(&mut self, graph: &mut Graph, (x, y): (Expr, Expr), angle: AngleSum) -> (Expr, Expr) {
@@ -61,7 +64,13 @@ impl Rotator {
         let sx = graph.mul(s, x);
         let cy = graph.mul(c, y);
         let turned = (graph.add(cx, sy), graph.sub(cy, sx));
-        self.origins.insert(turned, Origin { turned: (x, y), angle });
+        self.origins.insert(
+            turned,
+            Origin {
+                turned: (x, y),
+                angle,
+            },
+        );
         turned
     }
 }

@@ -2,7 +2,10 @@
 //!
 //! A tape computes a set of outputs for many states at once. Values of [`WIDTH`] states live side
 //! by side in a register; registers are reused as soon as their last reader is done, so the
-//! working set stays in cache.
+//! working set stays in cache. Sines and cosines are those of the lanes that emitted code runs on,
+//! and every operation is grouped as there: both readers of the graph give the same bits.
+
+use wide::f64x4;
 
 use super::graph::{Expr, Function, Graph, Input, Node};
 use super::schedule::{operands, order};
@@ -100,8 +103,8 @@ impl Tape {
         let value = match step.op {
             Op::Constant(value) => [value; WIDTH],
             Op::Input(input) => read(batch, input, start, width),
-            Op::Sin(angle) => self.angle(batch, angle, start, width).map(f64::sin),
-            Op::Cos(angle) => self.angle(batch, angle, start, width).map(f64::cos),
+            Op::Sin(angle) => lanes(self.angle(batch, angle, start, width), f64x4::sin),
+            Op::Cos(angle) => lanes(self.angle(batch, angle, start, width), f64x4::cos),
             Op::Add(a, b) => zip(&registers[a], &registers[b], |x, y| x + y),
             Op::Sub(a, b) => zip(&registers[a], &registers[b], |x, y| x - y),
             Op::Mul(a, b) => zip(&registers[a], &registers[b], |x, y| x * y),
@@ -119,12 +122,19 @@ impl Tape {
 
     fn angle(&self, batch: &Batch<'_>, index: usize, start: usize, width: usize) -> Register {
         let (terms, offset) = &self.angles[index];
-        let mut sum = [*offset; WIDTH];
-        for &(joint, sign) in terms {
+        let mut sum = [0.0; WIDTH];
+        for (place, &(joint, sign)) in terms.iter().enumerate() {
             let q = read(batch, Input::Q(joint), start, width);
-            sum = zip(&sum, &q, |s, q| s + sign * q);
+            sum = zip(
+                &sum,
+                &q,
+                |s, q| if place == 0 { sign * q } else { s + sign * q },
+            );
         }
-        sum
+        match *offset {
+            0.0 => sum,
+            offset => sum.map(|sum| sum + offset),
+        }
     }
 }
 
@@ -143,6 +153,17 @@ fn zip(a: &Register, b: &Register, f: impl Fn(f64, f64) -> f64) -> Register {
     let mut out = [0.0; WIDTH];
     for ((out, a), b) in out.iter_mut().zip(a).zip(b) {
         *out = f(*a, *b);
+    }
+    out
+}
+
+/// A function of four lanes at a time.
+fn lanes(register: Register, f: impl Fn(f64x4) -> f64x4) -> Register {
+    let mut out = register;
+    for four in out.chunks_exact_mut(4) {
+        if let Ok(values) = <[f64; 4]>::try_from(&*four) {
+            four.copy_from_slice(&f(f64x4::from(values)).to_array());
+        }
     }
     out
 }
@@ -211,7 +232,10 @@ impl<'a> Assembler<'a> {
         self.place[index] = target;
         self.steps.push(Step { op, target });
         for (output, sign) in std::mem::take(&mut self.stores[index]) {
-            self.steps.push(Step { op: Op::Store(target, output, sign), target });
+            self.steps.push(Step {
+                op: Op::Store(target, output, sign),
+                target,
+            });
             self.release(index);
         }
     }
@@ -227,7 +251,10 @@ impl<'a> Assembler<'a> {
         (0..self.graph.angle_count())
             .map(|index| {
                 let angle = self.graph.angle(index);
-                let terms = angle.terms.iter().map(|&(joint, sign)| (joint, f64::from(sign)));
+                let terms = angle
+                    .terms
+                    .iter()
+                    .map(|&(joint, sign)| (joint, f64::from(sign)));
                 (terms.collect(), angle.offset.value())
             })
             .collect()
@@ -254,12 +281,23 @@ mod tests {
         let q: Vec<f64> = (0..len).map(|i| 0.1 * i as f64 - 3.0).collect();
         let qd: Vec<f64> = (0..len).map(|i| 1.51 - 0.02 * i as f64).collect();
         let mut out = vec![f64::NAN; outputs.len() * len];
-        tape.run(&Batch { len, q: &q, qd: &qd, qdd: &qd }, &mut out);
+        tape.run(
+            &Batch {
+                len,
+                q: &q,
+                qd: &qd,
+                qdd: &qd,
+            },
+            &mut out,
+        );
         for i in 0..len {
             let (s, c) = (q[i] + 0.25).sin_cos();
             let expected = [s * qd[i] - c, -(s * qd[i]), f64::from(qd[i].signum()), 0.0];
             for (k, value) in expected.into_iter().enumerate() {
-                assert!((out[k * len + i] - value).abs() <= 1e-15, "output {k}, sample {i}");
+                assert!(
+                    (out[k * len + i] - value).abs() <= 1e-15,
+                    "output {k}, sample {i}"
+                );
             }
             assert_eq!(out[4 * len + i], out[i]);
         }

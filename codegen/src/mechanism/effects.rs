@@ -11,7 +11,11 @@ pub fn resolve(joints: &[Joint], specs: &[EffectSpec]) -> Vec<Effect> {
         .filter_map(|spec| {
             let joints: Option<Vec<usize>> = spec.joints.iter().map(index).collect();
             let shape = spec.shape.iter().map(|&(_, value)| value).collect();
-            joints.map(|joints| Effect { kind: spec.kind, joints, shape })
+            joints.map(|joints| Effect {
+                kind: spec.kind,
+                joints,
+                shape,
+            })
         })
         .collect()
 }

@@ -60,9 +60,14 @@ pub fn place(axes: &[Axis], gravity: [f64; 3], snaps: &mut Vec<Snap>) -> Vec<Joi
         let x = x_axis(axes, &origins, index, &frames);
         let z = axis.z();
         let rotation = nalgebra::Matrix3::from_columns(&[x, z.cross(&x), z]);
-        frames.push(Pose { rotation, translation: origins[index] });
+        frames.push(Pose {
+            rotation,
+            translation: origins[index],
+        });
     }
-    (0..axes.len()).map(|index| joint(axes, &frames, index, gravity, snaps)).collect()
+    (0..axes.len())
+        .map(|index| joint(axes, &frames, index, gravity, snaps))
+        .collect()
 }
 
 /// The child whose common normal decides a frame: the first in the order of the description.
@@ -131,12 +136,7 @@ fn project(point: Vector3<f64>, axis: &Axis) -> Vector3<f64> {
     axis.point() + axis.z() * (point - axis.point()).dot(&axis.z())
 }
 
-fn x_axis(
-    axes: &[Axis],
-    origins: &[Vector3<f64>],
-    index: usize,
-    frames: &[Pose],
-) -> Vector3<f64> {
+fn x_axis(axes: &[Axis], origins: &[Vector3<f64>], index: usize, frames: &[Pose]) -> Vector3<f64> {
     let axis = &axes[index];
     let Some(child) = main_child(axes, index) else {
         return last_x(axis, axis.parent.map(|parent| &frames[parent]));
@@ -162,13 +162,26 @@ fn x_axis(
 /// x of a frame that no common normal fixes: the description's own where it stands at right
 /// angles to the antecedent's, otherwise the one that makes theta vanish.
 fn last_x(axis: &Axis, parent: Option<&Pose>) -> Vector3<f64> {
-    let Some(parent) = parent else { return axis.x() };
+    let Some(parent) = parent else {
+        return axis.x();
+    };
     let parent_z: Vector3<f64> = parent.rotation.column(2).into();
     let parent_x: Vector3<f64> = parent.rotation.column(0).into();
     let near = parent_z.cross(&axis.z());
-    let line = if near.norm() >= NEARLY_PARALLEL { near.normalize() } else { parent_x };
-    let theta = line.cross(&axis.x()).dot(&axis.z()).atan2(line.dot(&axis.x()));
-    if Angle::radians(theta).rest().abs() <= SNAP { axis.x() } else { clean(line) }
+    let line = if near.norm() >= NEARLY_PARALLEL {
+        near.normalize()
+    } else {
+        parent_x
+    };
+    let theta = line
+        .cross(&axis.x())
+        .dot(&axis.z())
+        .atan2(line.dot(&axis.x()));
+    if Angle::radians(theta).rest().abs() <= SNAP {
+        axis.x()
+    } else {
+        clean(line)
+    }
 }
 
 /// Removes the rounding of products of exact rotations.
@@ -192,7 +205,13 @@ fn joint(
         }
     };
     let [gamma, alpha, theta] = euler(&relative).map(|angle| snap(angle, &axis.name, snaps));
-    let round = |x: f64| if x.abs() < LENGTH { 0.0 } else { (x * 1e12).round() / 1e12 };
+    let round = |x: f64| {
+        if x.abs() < LENGTH {
+            0.0
+        } else {
+            (x * 1e12).round() / 1e12
+        }
+    };
     Joint {
         name: axis.name.clone(),
         kind: axis.kind,
@@ -203,7 +222,11 @@ fn joint(
         position: relative.translation.map(round).into(),
         gravity,
         limits: axis.limits,
-        bodies: axis.bodies.iter().map(|body| local_body(body, frame)).collect(),
+        bodies: axis
+            .bodies
+            .iter()
+            .map(|body| local_body(body, frame))
+            .collect(),
     }
 }
 
@@ -233,7 +256,11 @@ fn snap(value: f64, joint: &str, snaps: &mut Vec<Snap>) -> Angle {
     let exact = Angle::radians(value);
     let snapped = exact.snapped(SNAP);
     if (exact.rest() - snapped.rest()).abs() > 1e-6 {
-        snaps.push(Snap { joint: joint.to_owned(), from: value, to: snapped.text() });
+        snaps.push(Snap {
+            joint: joint.to_owned(),
+            from: value,
+            to: snapped.text(),
+        });
     }
     snapped
 }
@@ -242,5 +269,9 @@ fn snap(value: f64, joint: &str, snaps: &mut Vec<Snap>) -> Angle {
 fn local_body(body: &Body, frame: &Pose) -> Body {
     let pose = frame.inverse().then(&body.pose);
     let inertial = body.inertial.map(|inertial| inertial.moved(&pose));
-    Body { name: body.name.clone(), pose, inertial }
+    Body {
+        name: body.name.clone(),
+        pose,
+        inertial,
+    }
 }

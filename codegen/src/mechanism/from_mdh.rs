@@ -27,7 +27,11 @@ pub fn axes(rows: &[MdhRow]) -> Vec<Axis> {
             }
         };
         frames.push((pose, Some(axes.len())));
-        let body = Body { name: row.name.clone(), pose, inertial: None };
+        let body = Body {
+            name: row.name.clone(),
+            pose,
+            inertial: None,
+        };
         axes.push(Axis {
             name: row.name.clone(),
             kind,

@@ -12,7 +12,9 @@ use crate::describe::{Motion, UrdfJoint, UrdfTree};
 /// joints are merged into the link that carries them.
 pub fn axes(tree: &UrdfTree) -> Vec<Axis> {
     let is_child = |link: usize| tree.joints.iter().any(|joint| joint.child == link);
-    let root = (0..tree.links.len()).find(|&link| !is_child(link)).unwrap_or(0);
+    let root = (0..tree.links.len())
+        .find(|&link| !is_child(link))
+        .unwrap_or(0);
     let mut axes = Vec::new();
     // What is still to visit: a joint, the pose of its parent link, and what carries that link.
     let mut stack = Vec::new();
@@ -27,7 +29,11 @@ pub fn axes(tree: &UrdfTree) -> Vec<Axis> {
         if let Some(carrier) = carrier {
             let link = &tree.links[joint.child];
             let inertial = link.inertial.as_ref().map(Standard::from_urdf);
-            axes[carrier].bodies.push(Body { name: link.name.clone(), pose, inertial });
+            axes[carrier].bodies.push(Body {
+                name: link.name.clone(),
+                pose,
+                inertial,
+            });
         }
         push_children(tree, joint.child, pose, carrier, &mut stack);
     }
@@ -44,7 +50,12 @@ fn push_children<'a>(
     stack: &mut Vec<Visit<'a>>,
 ) {
     // Reversed, because the stack turns the order round.
-    for joint in tree.joints.iter().rev().filter(|joint| joint.parent == link) {
+    for joint in tree
+        .joints
+        .iter()
+        .rev()
+        .filter(|joint| joint.parent == link)
+    {
         stack.push((joint, pose, carrier));
     }
 }
@@ -56,7 +67,10 @@ fn push(
     pose: Pose,
     parent: Option<usize>,
 ) -> usize {
-    let frame = Pose { rotation: pose.rotation * along_z(joint.axis), ..pose };
+    let frame = Pose {
+        rotation: pose.rotation * along_z(joint.axis),
+        ..pose
+    };
     axes.push(Axis {
         name: joint.name.clone(),
         kind,
@@ -72,7 +86,11 @@ fn push(
 /// (its y axis where x is the joint's axis).
 fn along_z(axis: [f64; 3]) -> Matrix3<f64> {
     let z = Vector3::from(axis).normalize();
-    let near = if z.x.abs() < 0.9 { Vector3::x() } else { Vector3::y() };
+    let near = if z.x.abs() < 0.9 {
+        Vector3::x()
+    } else {
+        Vector3::y()
+    };
     let x = (near - z * z.dot(&near)).normalize();
     Matrix3::from_columns(&[x, z.cross(&x), z])
 }

@@ -22,7 +22,11 @@ pub const NAMES: [&str; 10] = ["XX", "XY", "XZ", "YY", "YZ", "ZZ", "MX", "MY", "
 impl Standard {
     /// A link without mass.
     pub fn zero() -> Standard {
-        Standard { inertia: Matrix3::zeros(), moment: Vector3::zeros(), mass: 0.0 }
+        Standard {
+            inertia: Matrix3::zeros(),
+            moment: Vector3::zeros(),
+            mass: 0.0,
+        }
     }
 
     /// From a URDF's values about the centre of mass to the frame of its link
@@ -30,8 +34,11 @@ impl Standard {
     pub fn from_urdf(inertial: &UrdfInertial) -> Standard {
         let [xx, xy, xz, yy, yz, zz] = inertial.inertia;
         let central = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
-        let about_com =
-            Standard { inertia: central, moment: Vector3::zeros(), mass: inertial.mass };
+        let about_com = Standard {
+            inertia: central,
+            moment: Vector3::zeros(),
+            mass: inertial.mass,
+        };
         about_com.moved(&Pose::from_rpy(&inertial.origin))
     }
 
@@ -87,7 +94,10 @@ mod tests {
 
     #[test]
     fn moved_point_masses_match_their_definition() {
-        let points = [(1.5, Vector3::new(0.1, -0.2, 0.3)), (0.7, Vector3::new(-0.4, 0.05, 0.2))];
+        let points = [
+            (1.5, Vector3::new(0.1, -0.2, 0.3)),
+            (0.7, Vector3::new(-0.4, 0.05, 0.2)),
+        ];
         let pose = Pose {
             rotation: about_z(Angle::radians(0.7)) * about_x(Angle::radians(-1.1)),
             translation: Vector3::new(0.3, -0.1, 0.6),
@@ -96,7 +106,11 @@ mod tests {
             points.iter().fold(Standard::zero(), |sum, &(mass, point)| {
                 let x = map(point);
                 let inertia = mass * (Matrix3::identity() * x.dot(&x) - x * x.transpose());
-                sum.plus(&Standard { inertia, moment: mass * x, mass })
+                sum.plus(&Standard {
+                    inertia,
+                    moment: mass * x,
+                    mass,
+                })
             })
         };
         let direct = body(&|x| pose.rotation * x + pose.translation).values();

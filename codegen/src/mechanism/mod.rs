@@ -101,7 +101,12 @@ impl Mechanism {
         };
         let joints = frames::place(&axes, description.gravity, &mut snaps);
         let effects = effects::resolve(&joints, &description.effects);
-        Mechanism { name: description.name.clone(), joints, effects, snaps }
+        Mechanism {
+            name: description.name.clone(),
+            joints,
+            effects,
+            snaps,
+        }
     }
 
     /// Indices of the joints from the base to `joint`, `joint` itself last.

@@ -17,7 +17,10 @@ pub struct Pose {
 impl Pose {
     /// The identity.
     pub fn identity() -> Pose {
-        Pose { rotation: Matrix3::identity(), translation: Vector3::zeros() }
+        Pose {
+            rotation: Matrix3::identity(),
+            translation: Vector3::zeros(),
+        }
     }
 
     /// `self` followed by `next`, given in the frame that `self` leads to.
@@ -31,7 +34,10 @@ impl Pose {
     /// The displacement back.
     pub fn inverse(&self) -> Pose {
         let rotation = self.rotation.transpose();
-        Pose { rotation, translation: -(rotation * self.translation) }
+        Pose {
+            rotation,
+            translation: -(rotation * self.translation),
+        }
     }
 
     /// A URDF pose: roll, pitch, yaw about fixed axes, right angles exact.
