@@ -1,6 +1,12 @@
 //! Identities between the models of every built-in robot, and between the generated code and the
 //! interpreter.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    reason = "a test fails by panicking"
+)]
+
 use std::ops::{Add, Mul, Neg, Sub};
 
 use idim::codegen::builder;

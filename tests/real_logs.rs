@@ -1,6 +1,12 @@
 //! Real measured logs against published and reference results. The data are read from beside the
 //! checkout; without them the tests say so and pass.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    reason = "a test fails by panicking"
+)]
+
 use std::path::{Path, PathBuf};
 
 use idim::codegen::builder;

@@ -1,7 +1,14 @@
 //! The generated code of small robots, read line by line before it is accepted.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    reason = "a test fails by panicking"
+)]
+
 use std::path::PathBuf;
 
+use idim_codegen::expr::Operations;
 use idim_codegen::{builder, emit};
 
 fn robot(file: &str) -> String {
@@ -20,6 +27,31 @@ fn scara_module_reads_like_the_paper() {
 #[test]
 fn emps_module_is_one_axis() {
     insta::assert_snapshot!(robot("robots/emps.toml"));
+}
+
+/// A worse kernel is a red test: multiplications/additions/sines and cosines of the inertial
+/// columns, and the number of parameters.
+#[test]
+fn operation_counts_of_the_built_in_robots_do_not_grow_unseen() {
+    let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../robots");
+    let listing = std::fs::read_dir(folder).unwrap();
+    let mut paths: Vec<PathBuf> = listing.map(|item| item.unwrap().path()).collect();
+    paths.sort();
+    let mut table = String::new();
+    for path in paths {
+        let robot = builder::read(&path).unwrap().robot;
+        let counts = robot.counts();
+        let text = |c: Operations| format!("{}/{}/{}", c.mul, c.add, c.trig);
+        table.push_str(&format!(
+            "{:<8} {:>2} parameters, D {}, P+R {}, h {}\n",
+            robot.mechanism.name,
+            robot.base.parameters.len(),
+            text(counts.explicit),
+            text(counts.implicit),
+            text(counts.energy)
+        ));
+    }
+    insta::assert_snapshot!(table);
 }
 
 #[test]

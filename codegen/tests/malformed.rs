@@ -4,6 +4,12 @@
 //! An expectation is one line per diagnostic, `error CODE LINE:COLUMN start of the message`; a file
 //! that must be accepted has `ok NAME_OF_ROBOT` first, then its warnings and its snapped angles.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    reason = "a test fails by panicking"
+)]
+
 use idim_codegen::describe::{Description, Diagnostic, Kind, Severity, read_path, read_text};
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -35,7 +35,7 @@ enum Command {
     /// The specialised code of a robot.
     Generate(generate::Arguments),
     /// Parameters of a robot from measured logs, with statistics and validation.
-    Identify(identify::Arguments),
+    Identify(Box<identify::Arguments>),
 }
 
 /// Runs a command and shows what went wrong.

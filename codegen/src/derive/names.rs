@@ -17,10 +17,10 @@ pub fn motion(graph: &mut Graph, link: usize, m: &Motion) {
     vector(graph, &format!("wd{k}"), m.wd);
     vector(graph, &format!("a{k}"), m.a);
     // Products before U: in a planar robot an entry of U is one of them.
-    for i in 0..3 {
-        for j in i..3 {
+    for (i, first) in AXES.iter().enumerate() {
+        for (j, second) in AXES.iter().enumerate().skip(i) {
             let product = graph.mul(m.w[i], m.w[j]);
-            graph.name(product, &format!("w{k}{}{}", AXES[i], AXES[j]));
+            graph.name(product, &format!("w{k}{first}{second}"));
         }
     }
     for (i, row) in m.u.iter().enumerate() {

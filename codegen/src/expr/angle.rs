@@ -196,7 +196,7 @@ mod tests {
 
     #[test]
     fn angle_near_a_quarter_turn_is_exact() {
-        let angle = Angle::radians(1.570_796_326_79);
+        let angle = Angle::radians(FRAC_PI_2 - 5e-12);
         assert_eq!(angle.right(), Some(1));
         assert_eq!(angle.sin_cos(), (1.0, 0.0));
         assert_eq!(Angle::radians(-FRAC_PI_2).text(), "-pi/2");

@@ -292,7 +292,7 @@ mod tests {
         );
         for i in 0..len {
             let (s, c) = (q[i] + 0.25).sin_cos();
-            let expected = [s * qd[i] - c, -(s * qd[i]), f64::from(qd[i].signum()), 0.0];
+            let expected = [s * qd[i] - c, -(s * qd[i]), qd[i].signum(), 0.0];
             for (k, value) in expected.into_iter().enumerate() {
                 assert!(
                     (out[k * len + i] - value).abs() <= 1e-15,
