@@ -4,8 +4,8 @@ use faer::Mat;
 
 use super::EstimateError;
 
-/// A column this much smaller than the largest is rounding, not data.
-const UNSEEN: f64 = 1e-13;
+/// A column this much smaller than the largest is rounding, such as the cosine of pi/2.
+const UNSEEN: f64 = 1e-15;
 
 /// Singular values of the normalised W below this share of the largest are rounding: the filters
 /// leave about 1e-13, and base parameters on an exciting motion stay far above 1e-6.

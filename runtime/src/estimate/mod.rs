@@ -7,6 +7,8 @@
 
 mod identifiable;
 mod least_squares;
+#[cfg(test)]
+mod nist;
 mod robust;
 mod triangle;
 mod weights;
@@ -30,20 +32,20 @@ pub enum EstimateError {
         parameters: usize,
     },
     /// There is no torque to explain.
-    #[error("the measurements of block {block} are missing; identification needs torque")]
+    #[error("the measurements of joint {block} are missing; identification needs torque")]
     NoMeasurements {
-        /// Joint, counted from 1.
+        /// Joint, counted from 1; 1 for the power balance.
         block: usize,
     },
     /// A measurement or an entry of W that is not a number.
     #[error(
-        "{what} of block {block} is not finite at row {row}; \
-         look there for missing values or a model that divides by zero"
+        "{what} of joint {block} is not finite in decimated row {row}; \
+         look there for extreme values, or for a model that divides by zero"
     )]
     NotFinite {
         /// `the measurement` or `the regressor`.
         what: &'static str,
-        /// Joint, counted from 1.
+        /// Joint, counted from 1; 1 for the power balance.
         block: usize,
         /// Row of the decimated equations, counted from 0.
         row: usize,

@@ -1,6 +1,7 @@
 //! Robust weights: iteratively reweighted least squares after Huber (1964).
 
 use super::least_squares::solve;
+use super::weights::positive;
 use super::{Estimate, EstimateError, Triangle};
 use crate::observe::Equations;
 
@@ -71,15 +72,16 @@ fn row_factor(rho: f64) -> f64 {
 
 /// Robust standard deviation of each block's residuals; never zero.
 fn scales(residuals: &[Vec<f64>], blocks: &[Equations]) -> Vec<f64> {
-    let level = blocks
-        .iter()
-        .flat_map(|block| block.y.iter().flatten())
-        .fold(0.0, |largest: f64, y| largest.max(y.abs()));
-    let floor = if level > 0.0 { 1e-10 * level } else { 1.0 };
-    residuals
-        .iter()
-        .map(|rho| (median_magnitude(rho) / MEDIAN_OF_NORMAL).max(floor))
-        .collect()
+    let level = |block: &Equations| median_magnitude(block.y.as_deref().unwrap_or_default());
+    let largest = blocks.iter().map(level).fold(0.0, f64::max);
+    let scale = |(rho, block): (&Vec<f64>, &Equations)| {
+        positive(
+            median_magnitude(rho) / MEDIAN_OF_NORMAL,
+            level(block),
+            largest,
+        )
+    };
+    residuals.iter().zip(blocks).map(scale).collect()
 }
 
 fn median_magnitude(values: &[f64]) -> f64 {

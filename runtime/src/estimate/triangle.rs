@@ -101,13 +101,20 @@ pub(super) fn join(triangles: &[Triangle], factors: &[f64], np: usize) -> Mat<f6
     upper(all)
 }
 
-/// Upper trapezoidal factor of the QR decomposition, with zeros below.
+/// Upper trapezoidal factor of the QR decomposition, with zeros below. A matrix that has this
+/// form already is its own factor, without another round of rounding.
 pub(super) fn upper(matrix: Mat<f64>) -> Mat<f64> {
+    let columns = matrix.ncols();
+    let is_upper = (0..columns).all(|k| (k + 1..matrix.nrows()).all(|i| matrix[(i, k)] == 0.0));
+    if is_upper {
+        let rows = matrix.nrows().min(columns);
+        return Mat::from_fn(rows, columns, |i, k| matrix[(i, k)]);
+    }
     let qr = matrix.qr();
     let r: MatRef<'_, f64> = qr.thin_R();
     Mat::from_fn(
         r.nrows(),
-        r.ncols(),
+        columns,
         |i, k| if i <= k { r[(i, k)] } else { 0.0 },
     )
 }

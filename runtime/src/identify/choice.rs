@@ -2,6 +2,7 @@
 
 use super::IdentifyError;
 use crate::log::Recording;
+use crate::observe::rests;
 use crate::settings::Edges;
 use crate::signal::bandwidth;
 
@@ -46,33 +47,22 @@ pub(super) fn from_logs(
     edges: Edges,
     given: (Option<f64>, Option<usize>, Option<usize>),
 ) -> Result<Chosen, IdentifyError> {
-    for log in logs {
-        if !(log.rate_hz > 0.0 && log.rate_hz.is_finite()) {
-            return Err(IdentifyError::Rate {
-                log: log.name.clone(),
-                rate_hz: log.rate_hz,
-            });
-        }
-    }
-    let rate_hz = logs
-        .iter()
-        .map(|log| log.rate_hz)
-        .reduce(f64::min)
-        .ok_or(IdentifyError::NoLogs)?;
+    let rate_hz = slowest_rate(logs)?;
     let (fq, nd, trim) = given;
-    let dyn_hz = match fq.is_none() || nd.is_none() {
-        true => motion_band(logs)?,
-        false => 0.0,
+    let dyn_hz = match (fq, nd) {
+        (Some(_), Some(_)) => 0.0,
+        _ => motion_band(logs)?,
     };
-    let mut names = Vec::new();
-    let mut choose = |name, is_open: bool| {
-        if is_open {
-            names.push(name);
-        }
-    };
-    choose("fq_hz", fq.is_none());
-    choose("nd", nd.is_none());
-    choose("trim", trim.is_none());
+    let open = [
+        ("fq_hz", fq.is_none()),
+        ("nd", nd.is_none()),
+        ("trim", trim.is_none()),
+    ];
+    let names = open
+        .into_iter()
+        .filter(|(_, is_open)| *is_open)
+        .map(|(name, _)| name)
+        .collect();
     let fq_hz = fq.unwrap_or_else(|| cut_off(dyn_hz, rate_hz));
     let nd = nd.unwrap_or_else(|| ratio(dyn_hz, rate_hz, logs, parameters));
     let trim = trim.unwrap_or_else(|| edge(fq_hz, rate_hz, nd, edges));
@@ -84,19 +74,38 @@ pub(super) fn from_logs(
     })
 }
 
-/// The widest band of any joint in any log, \\( \omega_{dyn} \\) in Hz.
+/// The lowest sampling rate of the logs, Hz.
+fn slowest_rate(logs: &[Recording]) -> Result<f64, IdentifyError> {
+    let is_rate = |rate_hz: f64| rate_hz > 0.0 && rate_hz.is_finite();
+    if let Some(log) = logs.iter().find(|log| !is_rate(log.rate_hz)) {
+        return Err(IdentifyError::Rate {
+            log: log.name.clone(),
+            rate_hz: log.rate_hz,
+        });
+    }
+    logs.iter()
+        .map(|log| log.rate_hz)
+        .reduce(f64::min)
+        .ok_or(IdentifyError::NoLogs)
+}
+
+/// The widest band of any joint that moves in any log, \\( \omega_{dyn} \\) in Hz.
 fn motion_band(logs: &[Recording]) -> Result<f64, IdentifyError> {
-    let joints = logs
-        .iter()
-        .flat_map(|log| log.q.iter().map(|q| bandwidth(q, log.rate_hz)));
-    joints.flatten().reduce(f64::max).ok_or_else(|| {
-        let logs = logs
-            .iter()
-            .map(|log| log.name.as_str())
-            .collect::<Vec<_>>()
-            .join(", ");
-        IdentifyError::NothingMoves { logs }
-    })
+    let band = |log: &Recording| -> Option<f64> {
+        let moving = log.q.iter().filter(|q| !rests(q));
+        moving
+            .filter_map(|q| bandwidth(q, log.rate_hz))
+            .reduce(f64::max)
+    };
+    logs.iter()
+        .filter_map(band)
+        .reduce(f64::max)
+        .ok_or_else(|| {
+            let names: Vec<&str> = logs.iter().map(|log| log.name.as_str()).collect();
+            IdentifyError::NothingMoves {
+                logs: names.join(", "),
+            }
+        })
 }
 
 /// Cut-off of the prefilter, Hz, to two digits.

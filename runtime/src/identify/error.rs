@@ -10,7 +10,9 @@ pub enum IdentifyError {
     #[error("there is no log to identify from; give at least one")]
     NoLogs,
     /// The filters cannot be chosen because nothing moves.
-    #[error("no joint moves in {logs}: a robot at rest has no dynamics to identify")]
+    #[error(
+        "no joint moves in {logs}, or its motion drowns in noise: there are no dynamics to identify"
+    )]
     NothingMoves {
         /// Names of the logs.
         logs: String,

@@ -3,7 +3,7 @@
 use super::{IdentifyError, choice};
 use crate::log::Recording;
 use crate::model::IdentificationModel;
-use crate::observe::{Filtering, ModelKind};
+use crate::observe::{Filtering, ModelKind, check};
 use crate::settings::{Edges, Velocity, Weights};
 
 /// Choices of the user. Each that is `None` is taken from the robot's settings
@@ -48,7 +48,8 @@ impl Options {
     /// [`Plan`]'s rules make of the logs.
     ///
     /// # Errors
-    /// [`IdentifyError::NoLogs`]; [`IdentifyError::Rate`]; [`IdentifyError::NothingMoves`] if a
+    /// [`IdentifyError::NoLogs`]; [`IdentifyError::Rate`]; [`IdentifyError::Observe`] if a log does
+    /// not fit the robot; [`IdentifyError::NothingMoves`] if a
     /// cut-off or the decimation ratio would have to be chosen from logs without motion.
     pub fn resolve(
         &self,
@@ -59,7 +60,14 @@ impl Options {
         let edges = self.edges.or(set.edges).unwrap_or(Edges::Scipy);
         let order = self.order.or(set.order).unwrap_or(choice::ORDER);
         let (fq_hz, nd) = (self.fq_hz.or(set.fq_hz), self.nd.or(set.nd));
-        let trim = self.trim.or(set.trim);
+        // The robot's trim is in the unit of its own edge rule.
+        let own_trim = set
+            .trim
+            .filter(|_| edges == set.edges.unwrap_or(Edges::Scipy));
+        let trim = self.trim.or(own_trim);
+        for log in train {
+            check(log, model.joints().len())?;
+        }
         let chosen = choice::from_logs(train, model.columns().len(), edges, (fq_hz, nd, trim))?;
         let filtering = Filtering {
             fq_hz: chosen.fq_hz,

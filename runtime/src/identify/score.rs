@@ -1,6 +1,6 @@
 //! How well parameters explain torque.
 
-use crate::model::IdentificationModel;
+use crate::model::{IdentificationModel, JointKind};
 use crate::observe::{Equations, Observations};
 use crate::report::{Fit, JointFit};
 
@@ -19,12 +19,21 @@ pub(super) fn torque(
     let joints = errors.iter().zip(model.joints());
     let joints = joints.map(|(error, joint)| JointFit {
         name: joint.name.to_string(),
+        unit: unit(joint.kind),
         rmse: error.rmse(),
         rel_pct: error.rel_pct(),
     });
     Fit {
         total_pct: Squares::sum(&errors).rel_pct(),
         joints: joints.collect(),
+    }
+}
+
+/// Unit of the torque of a joint.
+fn unit(kind: JointKind) -> &'static str {
+    match kind {
+        JointKind::Revolute => "N m",
+        JointKind::Prismatic => "N",
     }
 }
 

@@ -1,10 +1,14 @@
 //! What is to be said about logs and estimates, in full sentences.
 
-use super::{Observed, Plan};
+use super::Plan;
 use crate::estimate::{Dependency, Estimate};
 use crate::log::Recording;
 use crate::model::IdentificationModel;
 use crate::observe::ModelKind;
+use crate::report::ModelResult;
+
+/// The power model is said to fail when its torque error exceeds the explicit one's this often.
+const POWER_FAILS: f64 = 2.0;
 
 /// A named list longer than this is cut short.
 const LONGEST_LIST: usize = 12;
@@ -44,12 +48,11 @@ pub(super) fn of_estimate(
     model: &dyn IdentificationModel,
     kind: ModelKind,
     estimate: &Estimate,
-    observed: &[Observed],
+    resting: &[usize],
 ) -> Vec<String> {
-    let resting = Observed::join(observed).resting;
     let mut unseen = estimate.unseen.clone();
     let mut warnings = Vec::new();
-    for joint in resting {
+    for &joint in resting {
         let of_joint = |c: &usize| {
             model
                 .columns()
@@ -93,6 +96,21 @@ fn dependency(model: &dyn IdentificationModel, kind: ModelKind, group: &Dependen
         group.columns.len(),
         kind.name()
     )
+}
+
+/// A power model that explains the power and not the torques.
+pub(super) fn of_results(models: &[ModelResult]) -> Option<String> {
+    let find = |kind| models.iter().find(|model| model.name == kind);
+    let (explicit, power) = find(ModelKind::Explicit).zip(find(ModelKind::Power))?;
+    let (torque, own) = (power.fit.total_pct, power.equation_pct);
+    (torque > POWER_FAILS * explicit.fit.total_pct && torque > POWER_FAILS * own).then(|| {
+        format!(
+            "The power model explains the power to {own:.1} % but the torques only to {torque:.1} \
+             %: its one equation for all joints does not separate the parameters on these logs \
+             (condition {:.0}). Trust the other models, or give longer logs.",
+            power.condition
+        )
+    })
 }
 
 /// Each sentence once, in the order of first appearance.

@@ -82,7 +82,7 @@ impl Equations {
         &self.w[k * self.rows..(k + 1) * self.rows]
     }
 
-    /// \\( W X \\) for parameters X of the whole model, `rows` values.
+    /// \\( W X \\) for the np parameters X of the model, `rows` values.
     pub fn product(&self, parameters: &[f64]) -> Vec<f64> {
         let mut product = vec![0.0; self.rows];
         for (k, column) in self.columns.iter().enumerate() {
@@ -93,7 +93,7 @@ impl Equations {
         product
     }
 
-    /// \\( Y - W X \\) for parameters X of the whole model; empty without measurements.
+    /// \\( Y - W X \\) for the np parameters X of the model; empty without measurements.
     pub fn residual(&self, parameters: &[f64]) -> Vec<f64> {
         let Some(y) = &self.y else { return Vec::new() };
         y.iter()

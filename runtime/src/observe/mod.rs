@@ -14,8 +14,10 @@ mod regressor;
 pub use equations::{Equations, Observations, observe};
 pub use error::ObserveError;
 pub use filtering::Filtering;
-pub use motion::Motion;
-pub use regressor::{contract, decimated};
+pub(crate) use motion::rests;
+pub use motion::{Motion, check, check_torque};
+pub(crate) use regressor::contract;
+pub use regressor::decimated;
 
 use serde::Serialize;
 

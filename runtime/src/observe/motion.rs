@@ -114,9 +114,7 @@ impl Motion {
 
     fn hold_resting_joints(&mut self, raw: &[Vec<f64>]) {
         for (joint, series) in raw.iter().enumerate() {
-            let low = series.iter().copied().fold(f64::INFINITY, f64::min);
-            let high = series.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-            if high - low <= REST {
+            if rests(series) {
                 let mean = series.iter().sum::<f64>() / series.len() as f64;
                 self.q[joint].fill(mean);
                 self.qd[joint].fill(0.0);
@@ -134,9 +132,19 @@ fn derivatives(series: &[Vec<f64>], rate_hz: f64) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// Checks that every series has one finite value per joint and sample. Torque may hold anything
-/// here: it never enters W, and estimation checks it.
-fn check(recording: &Recording, joints: usize) -> Result<(), ObserveError> {
+/// Whether a joint with these positions, rad or m, never moves.
+pub(crate) fn rests(q: &[f64]) -> bool {
+    let low = q.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = q.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    high - low <= REST
+}
+
+/// Checks that a recording has, for each of `joints` joints, one finite position and velocity per
+/// sample, and one torque. Torque may hold anything here, since it never enters W.
+///
+/// # Errors
+/// [`ObserveError::Joints`], [`ObserveError::Length`], [`ObserveError::NotFinite`].
+pub fn check(recording: &Recording, joints: usize) -> Result<(), ObserveError> {
     let channels = [("q", Some(&recording.q)), ("qd", recording.qd.as_ref())];
     for (name, series) in channels
         .into_iter()
@@ -158,30 +166,61 @@ fn check(recording: &Recording, joints: usize) -> Result<(), ObserveError> {
     Ok(())
 }
 
+/// Checks that a recording has torque, and that all of it is finite.
+///
+/// # Errors
+/// [`ObserveError::NoTorque`], [`ObserveError::NotFinite`].
+pub fn check_torque(recording: &Recording) -> Result<(), ObserveError> {
+    let Some(tau) = &recording.tau else {
+        return Err(ObserveError::NoTorque {
+            log: recording.name.clone(),
+        });
+    };
+    for (joint, values) in tau.iter().enumerate() {
+        check_finite(recording, "tau", joint + 1, values)?;
+    }
+    Ok(())
+}
+
 fn check_series(
     recording: &Recording,
     series: &'static str,
     joint: usize,
     values: &[f64],
 ) -> Result<(), ObserveError> {
-    let log = || recording.name.clone();
     let (has, needs) = (values.len(), recording.len);
     if has != needs {
+        let log = recording.name.clone();
         return Err(ObserveError::Length {
-            log: log(),
+            log,
             series,
             joint,
             has,
             needs,
         });
     }
+    match series {
+        "tau" => Ok(()),
+        _ => check_finite(recording, series, joint, values),
+    }
+}
+
+fn check_finite(
+    recording: &Recording,
+    series: &'static str,
+    joint: usize,
+    values: &[f64],
+) -> Result<(), ObserveError> {
     match values.iter().position(|x| !x.is_finite()) {
-        Some(sample) if series != "tau" => Err(ObserveError::NotFinite {
-            log: log(),
-            series,
-            joint,
-            sample,
-        }),
-        _ => Ok(()),
+        Some(sample) => {
+            let log = recording.name.clone();
+            Err(ObserveError::NotFinite {
+                log,
+                series,
+                joint,
+                sample,
+            })
+        }
+        None => Ok(()),
     }
 }

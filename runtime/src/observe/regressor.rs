@@ -48,8 +48,8 @@ pub fn decimated(
     Ok(rows)
 }
 
-/// The product of an output with parameters along a motion: one series per row of the output.
-pub fn contract(
+/// The product of an output with the np `parameters` along a motion: one series per joint.
+pub(crate) fn contract(
     model: &dyn IdentificationModel,
     output: Output,
     motion: &Motion,

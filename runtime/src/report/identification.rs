@@ -91,7 +91,9 @@ pub struct Fit {
 pub struct JointFit {
     /// The joint's name.
     pub name: String,
-    /// Root mean square error, N m or N.
+    /// Unit of `rmse`: `N m` or `N`.
+    pub unit: &'static str,
+    /// Root mean square error.
     pub rmse: f64,
     /// `100 * ||tau - W X|| / ||tau||`.
     pub rel_pct: f64,

@@ -29,13 +29,61 @@ pub fn terminal(identification: &Identification) -> String {
 
 /// Robot, logs, filters.
 fn heading(id: &Identification) -> String {
-    let filter = &id.filter;
-    let seconds = id.samples as f64 / id.rate_hz;
-    let trim = match filter.edges {
+    let first = format!(
+        "{}: {} samples at {} Hz ({} s) of {}",
+        id.robot,
+        id.samples,
+        id.rate_hz,
+        significant(id.samples as f64 / id.rate_hz, 3),
+        id.logs.join(", ")
+    );
+    let second = [prefilter(id), decimation(id), trim(id), words(id)].join(", ");
+    let mut lines = vec![shorten(&first, WIDTH), shorten(&second, WIDTH)];
+    if !id.filter.chosen.is_empty() {
+        lines.push(format!(
+            "chosen from the data: {}",
+            id.filter.chosen.join(", ")
+        ));
+    }
+    lines.join("\n") + "\n"
+}
+
+fn prefilter(id: &Identification) -> String {
+    let signals = if id.filter.prefilter_torque {
+        "q and tau"
+    } else {
+        "q"
+    };
+    format!(
+        "{signals} below {} Hz (Butterworth {})",
+        id.filter.fq_hz, id.filter.order
+    )
+}
+
+fn decimation(id: &Identification) -> String {
+    match id.filter.nd {
+        1 => "all kept".to_owned(),
+        nd => {
+            let low_pass = significant(0.4 * id.rate_hz / nd.max(1) as f64, 3);
+            format!("1 in {nd} kept (below {low_pass} Hz)")
+        }
+    }
+}
+
+fn trim(id: &Identification) -> String {
+    let unit = match id.filter.edges {
         Edges::Scipy => "samples",
         Edges::Matlab => "rows",
     };
-    let velocity = match filter.velocity {
+    let border = match id.filter.border {
+        (0, 0) => String::new(),
+        (start, end) => format!(" and {start} + {end} samples"),
+    };
+    format!("{} {unit}{border} trimmed", id.filter.trim)
+}
+
+fn words(id: &Identification) -> String {
+    let velocity = match id.filter.velocity {
         Velocity::Derived => "qd from q",
         Velocity::Measured => "qd measured",
     };
@@ -44,31 +92,7 @@ fn heading(id: &Identification) -> String {
         Weights::Joint => "weighted by joint",
         Weights::Robust => "robust weights",
     };
-    let torque = if filter.prefilter_torque {
-        "q and tau"
-    } else {
-        "q"
-    };
-    let low_pass = significant(0.4 * id.rate_hz / filter.nd.max(1) as f64, 3);
-    let mut text = format!(
-        "{}: {} samples at {} Hz ({} s) of {}\n",
-        id.robot,
-        id.samples,
-        id.rate_hz,
-        significant(seconds, 3),
-        id.logs.join(", ")
-    );
-    text = shorten(text.trim_end(), WIDTH);
-    let _ = write!(
-        text,
-        "\n{torque} below {} Hz (Butterworth {}), 1 in {} kept (below {low_pass} Hz), \
-         {} {trim} trimmed, {velocity}, {weights}\n",
-        filter.fq_hz, filter.order, filter.nd, filter.trim
-    );
-    if !filter.chosen.is_empty() {
-        let _ = writeln!(text, "chosen from the data: {}", filter.chosen.join(", "));
-    }
-    text
+    format!("{velocity}, {weights}")
 }
 
 /// One row per parameter: name, unit, value, sigma and %sigma of each model, relation.
@@ -165,11 +189,13 @@ fn section(table: &mut Table, title: &str, fits: &[&Fit]) {
             .iter()
             .filter_map(|fit| fit.joints.get(joint))
             .collect();
-        let name = rows.first().map_or("", |row| row.name.as_str());
+        let name = rows
+            .first()
+            .map_or(String::new(), |row| format!("  {}, {}", row.name, row.unit));
         let cells = rows
             .iter()
             .flat_map(|r| [significant(r.rel_pct, 3), significant(r.rmse, 3)]);
-        table.row(std::iter::once(format!("  {name}")).chain(cells).collect());
+        table.row(std::iter::once(name).chain(cells).collect());
     }
     let totals = fits
         .iter()

@@ -13,13 +13,14 @@ const FEWEST: usize = 32;
 ///
 /// Differentiation amplifies the noise of a position sensor with frequency, so going up from the
 /// strongest octave the power falls with the motion and rises again with the noise; what lies
-/// above the weakest octave is noise. `None` for a signal too short or without motion.
+/// above the weakest octave is noise. `None` for a signal too short, without motion, or strongest
+/// in its highest octave: that is noise alone.
 pub fn bandwidth(position: &[f64], rate_hz: f64) -> Option<f64> {
     if position.len() < FEWEST {
         return None;
     }
     let power = velocity_power(position);
-    let motion = &power[..noise_begins(&power)];
+    let motion = &power[..noise_begins(&power)?];
     let total: f64 = motion.iter().sum();
     if !(total > 0.0 && total.is_finite()) {
         return None;
@@ -52,18 +53,19 @@ fn velocity_power(position: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// First bin above the weakest octave on the high side of the strongest octave.
-fn noise_begins(power: &[f64]) -> usize {
+/// First bin above the weakest octave on the high side of the strongest octave; `None` if there
+/// is no octave above the strongest.
+fn noise_begins(power: &[f64]) -> Option<usize> {
     let octaves: Vec<(usize, f64)> = std::iter::successors(Some(1), |low| Some(low * 2))
         .take_while(|low| *low < power.len())
         .map(|low| (2 * low, power[low..(2 * low).min(power.len())].iter().sum()))
         .collect();
     let by_power = |a: &&(usize, f64), b: &&(usize, f64)| a.1.total_cmp(&b.1);
-    let strongest = octaves.iter().max_by(by_power).map_or(0, |octave| octave.0);
-    let above = octaves.iter().filter(|octave| octave.0 >= strongest);
+    let strongest = octaves.iter().max_by(by_power)?.0;
+    let above = octaves.iter().filter(|octave| octave.0 > strongest);
     above
         .min_by(by_power)
-        .map_or(power.len(), |octave| octave.0.min(power.len()))
+        .map(|octave| octave.0.min(power.len()))
 }
 
 /// Discrete Fourier transform in place; the length is a power of two (Cooley and Tukey 1965).
@@ -141,6 +143,14 @@ mod tests {
             .collect();
         let band = bandwidth(&wave, 1000.0).unwrap();
         assert!((0.4..3.0).contains(&band), "{band}");
+    }
+
+    #[test]
+    fn noise_alone_has_no_band() {
+        let jitter: Vec<f64> = (0..4000)
+            .map(|i| f64::from((i * 7919) % 13) * 1e-6)
+            .collect();
+        assert_eq!(bandwidth(&jitter, 1000.0), None);
     }
 
     #[test]

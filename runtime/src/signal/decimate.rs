@@ -16,6 +16,9 @@ const RIPPLE_DB: f64 = 0.05;
 /// Cut-off of the low-pass relative to the half rate after decimation, as in both.
 const CUT_OFF: f64 = 0.8;
 
+/// Beyond this ratio the low-pass loses its accuracy, and no log is long enough.
+const LARGEST_RATIO: usize = 10_001;
+
 /// The operator `fpd` of Gautier 1996, section 6.2: a zero-phase Chebyshev I low-pass of order 8
 /// with 0.05 dB ripple, cut-off \\( \omega_{fp} = 0.8 (\omega_c / 2) / n_d \\), at the full rate,
 /// then one sample in `n_d`. A ratio of 1 leaves signals unchanged.
@@ -31,11 +34,16 @@ impl Decimator {
     /// Decimation by `ratio` of signals sampled at `rate_hz`.
     ///
     /// # Errors
-    /// [`SignalError::Ratio`] if the ratio is zero.
+    /// [`SignalError::Ratio`] if the ratio is zero or beyond reason.
     pub fn new(ratio: usize, rate_hz: f64, edges: Edges) -> Result<Self, SignalError> {
         let filter = match ratio {
-            0 => return Err(SignalError::Ratio),
             1 => None,
+            0 | LARGEST_RATIO.. => {
+                return Err(SignalError::Ratio {
+                    ratio,
+                    largest: LARGEST_RATIO - 1,
+                });
+            }
             _ => {
                 let cascade = chebyshev1(ORDER, RIPPLE_DB, CUT_OFF / ratio as f64, 2.0)?;
                 Some(ZeroPhase::new(cascade, ORDER, edges))
@@ -58,8 +66,8 @@ impl Decimator {
     pub fn kept(&self, samples: usize) -> Vec<usize> {
         let first = match self.edges {
             Edges::Scipy => 0,
-            // nbeg = r - (r*ceil(n/r) - n) counts from 1.
-            Edges::Matlab => (samples + self.ratio - 1) % self.ratio,
+            // nbeg = r - (r*ceil(n/r) - n), counted from 1, keeps the last sample.
+            Edges::Matlab => samples.saturating_sub(1) % self.ratio,
         };
         (first..samples).step_by(self.ratio).collect()
     }
@@ -99,7 +107,7 @@ impl Decimator {
     ) -> Result<Vec<Vec<f64>>, SignalError> {
         let difference = |group: &mut [[f64; LANES]]| differentiate(group, self.rate_hz);
         match self.edges {
-            Edges::Matlab => self.read(signals, kept, |_| (), difference),
+            Edges::Matlab => self.read(signals, kept, from_zero, difference),
             Edges::Scipy => self.read(signals, kept, difference, |_| ()),
         }
     }
@@ -121,6 +129,15 @@ impl Decimator {
             Some(filter) => filter.groups(signals, before, read),
             None => Ok(unfiltered(signals, before, read)),
         }
+    }
+}
+
+/// Lets every signal start at zero, so that the derivative of a constant is zero and not the
+/// rounding of the low-pass times the sampling rate.
+fn from_zero(group: &mut [[f64; LANES]]) {
+    let first = group.first().copied().unwrap_or([0.0; LANES]);
+    for sample in group {
+        *sample = std::array::from_fn(|lane| sample[lane] - first[lane]);
     }
 }
 
@@ -208,10 +225,28 @@ mod tests {
     }
 
     #[test]
-    fn a_ratio_of_zero_is_an_error() {
-        assert_eq!(
-            Decimator::new(0, 100.0, Edges::Scipy).unwrap_err(),
-            SignalError::Ratio
-        );
+    fn a_constant_has_no_derivative() {
+        let constant = [vec![0.123456789; 3000]];
+        for edges in [Edges::Matlab, Edges::Scipy] {
+            let decimator = Decimator::new(7, 5000.0, edges).unwrap();
+            let rates = decimator
+                .rates(constant.as_slice(), &decimator.kept(3000))
+                .unwrap();
+            assert!(rates[0].iter().all(|rate| *rate == 0.0));
+        }
+    }
+
+    #[test]
+    fn ratios_beyond_reason_are_errors() {
+        for ratio in [0, 10_001, usize::MAX] {
+            let error = Decimator::new(ratio, 100.0, Edges::Matlab).unwrap_err();
+            assert_eq!(
+                error,
+                SignalError::Ratio {
+                    ratio,
+                    largest: 10_000
+                }
+            );
+        }
     }
 }

@@ -6,6 +6,9 @@ use std::f64::consts::PI;
 use super::SignalError;
 use super::cascade::{Cascade, Section};
 
+/// Below this share of half the sampling rate, poles are so close to 1 that rounding moves them.
+const LOWEST: f64 = 1e-5;
+
 /// Beyond this order the rounding of the sections outweighs the sharper cut.
 const MAX_ORDER: usize = 24;
 
@@ -67,9 +70,11 @@ fn warp(order: usize, cutoff_hz: f64, rate_hz: f64) -> Result<f64, SignalError> 
         });
     }
     let nyquist_hz = rate_hz / 2.0;
-    if !(cutoff_hz > 0.0 && cutoff_hz < nyquist_hz) {
+    let lowest_hz = LOWEST * nyquist_hz;
+    if !(cutoff_hz >= lowest_hz && cutoff_hz < nyquist_hz) {
         return Err(SignalError::CutOff {
             cutoff_hz,
+            lowest_hz,
             nyquist_hz,
         });
     }
@@ -259,6 +264,7 @@ mod tests {
     fn impossible_designs_are_errors() {
         let nyquist = SignalError::CutOff {
             cutoff_hz: 50.0,
+            lowest_hz: 5e-4,
             nyquist_hz: 50.0,
         };
         assert_eq!(butterworth(4, 50.0, 100.0).unwrap_err(), nyquist);

@@ -26,14 +26,16 @@ pub use zero_phase::ZeroPhase;
 /// Why a filter cannot be designed or applied.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SignalError {
-    /// A cut-off outside the open interval from 0 to half the sampling rate.
+    /// A cut-off that is not below half the sampling rate, or too low for the arithmetic.
     #[error(
-        "cut-off {cutoff_hz} Hz is not between 0 and {nyquist_hz} Hz, half the sampling rate; \
-         choose a lower cut-off"
+        "cut-off {cutoff_hz} Hz is not between {lowest_hz} Hz and {nyquist_hz} Hz, \
+         half the sampling rate"
     )]
     CutOff {
         /// What was asked for, Hz.
         cutoff_hz: f64,
+        /// Lowest cut-off that double precision can realise at this rate, Hz.
+        lowest_hz: f64,
         /// Half the sampling rate, Hz.
         nyquist_hz: f64,
     },
@@ -45,9 +47,14 @@ pub enum SignalError {
         /// The largest order that is still accurate.
         max: usize,
     },
-    /// A decimation ratio of zero.
-    #[error("the decimation ratio must be at least 1")]
-    Ratio,
+    /// A decimation ratio of zero or beyond reason.
+    #[error("the decimation ratio {ratio} is not between 1 and {largest}")]
+    Ratio {
+        /// What was asked for.
+        ratio: usize,
+        /// The largest ratio that is still accurate.
+        largest: usize,
+    },
     /// Too few samples for the extension at the edges of a zero-phase filter.
     #[error(
         "zero-phase filtering needs at least {needs} samples and has {has}; \

@@ -89,15 +89,15 @@ impl ZeroPhase {
         let inner = self.extension..self.extension + has;
         let groups: Vec<Vec<T>> = (0..signals.count().div_ceil(LANES))
             .into_par_iter()
-            .map(|group| {
+            .map_init(Vec::new, |samples, group| {
                 let first = group * LANES;
                 let width = LANES.min(signals.count() - first);
-                let mut samples = vec![[0.0; LANES]; has + 2 * self.extension];
+                samples.resize(has + 2 * self.extension, [0.0; LANES]);
                 for lane in 0..width {
                     signals.copy_to_lane(first + lane, lane, &mut samples[inner.clone()]);
                 }
                 prepare(&mut samples[inner.clone()]);
-                self.run(&mut samples);
+                self.run(samples);
                 read(&mut samples[inner.clone()], width)
             })
             .collect();

@@ -1,7 +1,14 @@
 //! Published numbers and identities of whole identifications.
 
 mod emps;
+mod failures;
 mod hand_written;
+mod options;
 mod properties;
 mod reading;
+mod report;
+mod robustness;
 mod scara;
+mod synthetic;
+mod weights;
+mod windows;

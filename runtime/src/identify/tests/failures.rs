@@ -1,0 +1,99 @@
+//! What cannot be identified has a name.
+
+use super::hand_written::scara;
+use super::synthetic::{identified, log, motion, options, with_torque};
+use crate::estimate::EstimateError;
+use crate::identify::{IdentifyError, Options, identify};
+use crate::log::Recording;
+use crate::observe::{ModelKind, ObserveError};
+use crate::report::terminal;
+
+#[test]
+fn a_joint_that_never_moves_is_named() {
+    let mut still = motion("still.csv", 0.0, 3000);
+    still.q[1].fill(0.7);
+    let found = identified(&scara(), &[with_torque(&scara(), still)]);
+    let says = |text: &str| found.warnings.iter().any(|w| w.contains(text));
+    assert!(says(
+        "joint 2 (elbow) never moves: FV2, FS2 cannot be identified"
+    ));
+    assert!(
+        says("ZZR1, ZZ2, LMX2, LMY2 cannot be identified one by one"),
+        "{:?}",
+        found.warnings
+    );
+    let explicit = found.model(ModelKind::Explicit).unwrap();
+    for name in ["FV2", "FS2", "LMX2"] {
+        let parameter = explicit.parameter(name).unwrap();
+        assert_eq!((parameter.value, parameter.sigma), (None, None));
+    }
+    for (name, x) in [("FV1", 0.05), ("FS1", 0.5)] {
+        assert!((explicit.parameter(name).unwrap().value.unwrap() - x).abs() < 1e-9);
+    }
+    assert!(explicit.fit.total_pct < 1e-9);
+    assert!(explicit.rank < 8 && explicit.condition.is_finite());
+    assert!(terminal(&found).contains("warning: joint 2 (elbow) never moves"));
+}
+
+#[test]
+fn sensor_noise_of_a_resting_joint_is_no_motion() {
+    let mut still = motion("still.csv", 0.0, 3000);
+    still.q[1] = (0..3000).map(|i| 0.7 + 3e-6 * f64::from(i % 2)).collect();
+    let found = identified(&scara(), &[with_torque(&scara(), still)]);
+    assert!(found.models[0].parameter("FS2").unwrap().value.is_none());
+}
+
+#[test]
+fn too_short_a_log_is_an_error() {
+    let short = Recording {
+        tau: Some(vec![vec![0.0; 10]; 2]),
+        ..motion("short.csv", 0.0, 10)
+    };
+    let error = identify(&scara(), &[short], &[], &options(), &()).unwrap_err();
+    let text = error.to_string();
+    assert!(
+        text.contains("short.csv: prefilter") && text.contains("needs at least 16"),
+        "{text}"
+    );
+    let trimmed = log("a", 0.0, 190);
+    let error = identify(&scara(), &[trimmed], &[], &options(), &()).unwrap_err();
+    assert!(error.to_string().contains("leaves nothing"), "{error}");
+}
+
+#[test]
+fn fewer_equations_than_parameters_is_an_error() {
+    let options = Options {
+        nd: Some(20),
+        models: vec![ModelKind::Power],
+        ..options()
+    };
+    let error = identify(&scara(), &[log("a", 0.0, 300)], &[], &options, &()).unwrap_err();
+    let source = EstimateError::TooFewEquations {
+        rows: 5,
+        parameters: 8,
+    };
+    assert_eq!(
+        error,
+        IdentifyError::Estimate {
+            model: ModelKind::Power,
+            source
+        }
+    );
+}
+
+#[test]
+fn a_log_of_another_robot_is_an_error() {
+    let mut other = log("other.csv", 0.0, 3000);
+    other.q.push(vec![0.0; 3000]);
+    let error = identify(&scara(), &[other], &[], &options(), &()).unwrap_err();
+    let joints = ObserveError::Joints {
+        log: "other.csv".into(),
+        has: 3,
+        needs: 2,
+    };
+    assert_eq!(error, joints.into());
+    assert_eq!(
+        identify(&scara(), &[], &[], &options(), &()).unwrap_err(),
+        IdentifyError::NoLogs
+    );
+}
