@@ -62,13 +62,7 @@ pub fn identify(
     let mut warnings = warnings::of_logs(model, train, validate, &plan);
     for &kind in &plan.models {
         progress.step(&format!("solving the {} model", kind.name()));
-        let blocks = &together.of(kind)?.blocks;
-        let estimate = estimate(blocks, model.columns().len(), plan.weights).map_err(|source| {
-            IdentifyError::Estimate {
-                model: kind,
-                source,
-            }
-        })?;
+        let estimate = solved(model, kind, &together, &plan)?;
         warnings.extend(warnings::of_estimate(
             model,
             kind,
@@ -87,6 +81,23 @@ pub fn identify(
         weights: plan.weights,
         warnings: warnings::once_each(warnings),
         models,
+    })
+}
+
+fn solved(
+    model: &dyn IdentificationModel,
+    kind: ModelKind,
+    observed: &Observed,
+    plan: &Plan,
+) -> Result<Estimate, IdentifyError> {
+    estimate(
+        &observed.of(kind)?.blocks,
+        model.columns().len(),
+        plan.weights,
+    )
+    .map_err(|source| IdentifyError::Estimate {
+        model: kind,
+        source,
     })
 }
 
