@@ -88,21 +88,6 @@ fn weighted(
     })
 }
 
-impl Estimate {
-    /// The same estimate with the residual's degrees of freedom counted in another way: sigmas
-    /// scale with the root of r - np over r - 1.
-    pub fn counted(mut self, freedom: Freedom) -> Estimate {
-        if freedom == Freedom::Mean && self.rows > 1 {
-            let spare = self.rows.saturating_sub(self.rank) as f64;
-            let factor = (spare / (self.rows - 1) as f64).sqrt();
-            for sigma in self.sigma.iter_mut().flatten() {
-                *sigma *= factor;
-            }
-        }
-        self
-    }
-}
-
 /// Least squares of blocks multiplied by `factors`.
 pub(super) fn solve(
     triangles: &[Triangle],
