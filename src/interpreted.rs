@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use idim_codegen::derive::ParameterKind;
-use idim_codegen::describe::{EdgesSpec, VelocitySpec, WeightsSpec};
+use idim_codegen::describe::{EdgesSpec, FreedomSpec, VelocitySpec, WeightsSpec};
 use idim_codegen::emit::tables::{Signals, signals};
 use idim_codegen::expr::tape::{Batch, Tape};
 use idim_codegen::mechanism;
@@ -11,7 +11,7 @@ use idim_codegen::robot::{self, Robot};
 use idim_runtime::model::{
     Column, ColumnKind, Entry, IdentificationModel, Joint, JointKind, Output, Pattern, States,
 };
-use idim_runtime::settings::{Drives, Edges, Settings, Velocity, Weights};
+use idim_runtime::settings::{Drives, Edges, Freedom, Settings, Velocity, Weights};
 
 /// One output as a tape.
 #[derive(Clone, Debug)]
@@ -146,6 +146,10 @@ fn settings(robot: &Robot) -> Settings {
             VelocitySpec::Measured => Velocity::Measured,
         }),
         prefilter_torque: spec.prefilter_torque,
+        degrees_of_freedom: spec.degrees_of_freedom.map(|freedom| match freedom {
+            FreedomSpec::Parameters => Freedom::Parameters,
+            FreedomSpec::Mean => Freedom::Mean,
+        }),
         drives: Drives {
             gains: Cow::Owned(drives.gains.clone()),
             coupling: Cow::Owned(drives.coupling.clone()),

@@ -95,6 +95,7 @@ fn solved(
         model.columns().len(),
         plan.weights,
     )
+    .map(|estimate| estimate.counted(plan.degrees_of_freedom))
     .map_err(|source| IdentifyError::Estimate {
         model: kind,
         source,

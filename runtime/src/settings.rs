@@ -31,6 +31,18 @@ pub enum Weights {
     Robust,
 }
 
+/// Degrees of freedom of the residual of r equations, in the variance that sigma is taken from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Freedom {
+    /// r - np: unbiased (Gautier 1996, section 7.3).
+    #[default]
+    Parameters,
+    /// r - 1, about the residual's mean: the standard deviation that Matlab's `std` gives, in
+    /// which the reference results of EMPS are published.
+    Mean,
+}
+
 /// Where the joint velocity comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
@@ -62,6 +74,8 @@ pub struct Settings {
     pub velocity: Option<Velocity>,
     /// Whether the torque passes the prefilter too (Gautier 1996, section 7.2).
     pub prefilter_torque: Option<bool>,
+    /// What the residual's degrees of freedom are counted against.
+    pub degrees_of_freedom: Option<Freedom>,
     /// What the log's torque channels mean.
     pub drives: Drives,
 }

@@ -228,6 +228,17 @@ pub struct IdentifySpec {
     pub velocity: Option<VelocitySpec>,
     /// Whether the torque passes the prefilter too.
     pub prefilter_torque: Option<bool>,
+    /// `parameters` or `mean`.
+    pub degrees_of_freedom: Option<FreedomSpec>,
+}
+
+/// What a residual's degrees of freedom are counted against.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FreedomSpec {
+    /// r - np.
+    Parameters,
+    /// r - 1.
+    Mean,
 }
 
 /// Edge rules of filters by the tools they come from.

@@ -6,7 +6,7 @@ use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
 use crate::derive::ParameterKind;
-use crate::describe::{EdgesSpec, VelocitySpec, WeightsSpec};
+use crate::describe::{EdgesSpec, FreedomSpec, VelocitySpec, WeightsSpec};
 use crate::expr::Expr;
 use crate::mechanism::JointKind;
 use crate::robot::{Output, Robot};
@@ -124,6 +124,10 @@ pub fn settings(robot: &Robot) -> TokenStream {
         VelocitySpec::Derived => quote! { settings::Velocity::Derived },
         VelocitySpec::Measured => quote! { settings::Velocity::Measured },
     }));
+    let freedom = option(spec.degrees_of_freedom.map(|freedom| match freedom {
+        FreedomSpec::Parameters => quote! { settings::Freedom::Parameters },
+        FreedomSpec::Mean => quote! { settings::Freedom::Mean },
+    }));
     let prefilter_torque = option(spec.prefilter_torque.map(|yes| quote! { #yes }));
     let gains = robot.description.drives.gains.iter().copied().map(signed);
     let coupling = robot
@@ -144,6 +148,7 @@ pub fn settings(robot: &Robot) -> TokenStream {
             weights: #weights,
             velocity: #velocity,
             prefilter_torque: #prefilter_torque,
+            degrees_of_freedom: #freedom,
             drives: settings::Drives {
                 gains: Cow::Borrowed(&[#(#gains),*]),
                 coupling: Cow::Borrowed(&[#(#coupling),*]),

@@ -6,7 +6,7 @@ use super::identifiable::{Dependency, identifiability};
 use super::triangle::{join, upper};
 use super::{EstimateError, Triangle, robust, weights};
 use crate::observe::Equations;
-use crate::settings::Weights;
+use crate::settings::{Freedom, Weights};
 
 /// A least-squares estimate of np parameters.
 #[derive(Clone, Debug)]
@@ -86,6 +86,21 @@ fn weighted(
         condition_unweighted: ordinary.condition,
         ..weighted
     })
+}
+
+impl Estimate {
+    /// The same estimate with the residual's degrees of freedom counted in another way: sigmas
+    /// scale with the root of r - np over r - 1.
+    pub fn counted(mut self, freedom: Freedom) -> Estimate {
+        if freedom == Freedom::Mean && self.rows > 1 {
+            let spare = self.rows.saturating_sub(self.rank) as f64;
+            let factor = (spare / (self.rows - 1) as f64).sqrt();
+            for sigma in self.sigma.iter_mut().flatten() {
+                *sigma *= factor;
+            }
+        }
+        self
+    }
 }
 
 /// Least squares of blocks multiplied by `factors`.

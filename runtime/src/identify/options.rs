@@ -4,7 +4,7 @@ use super::{IdentifyError, choice};
 use crate::log::Recording;
 use crate::model::IdentificationModel;
 use crate::observe::{Filtering, ModelKind, check};
-use crate::settings::{Edges, Velocity, Weights};
+use crate::settings::{Edges, Freedom, Velocity, Weights};
 
 /// Choices of the user. Each that is `None` is taken from the robot's settings
 /// ([`IdentificationModel::settings`]), and failing that from the data.
@@ -41,6 +41,8 @@ pub struct Plan {
     pub filtering: Filtering,
     /// Weights of the equations.
     pub weights: Weights,
+    /// What the residual's degrees of freedom are counted against.
+    pub degrees_of_freedom: Freedom,
 }
 
 impl Options {
@@ -88,6 +90,7 @@ impl Options {
             models: self.kinds(),
             filtering,
             weights,
+            degrees_of_freedom: set.degrees_of_freedom.unwrap_or_default(),
         })
     }
 

@@ -35,8 +35,8 @@ impl Grid {
     /// The grid for the table's stamps, at the given rate or at the one the stamps show.
     ///
     /// Uniform stamps keep their samples; others get the grid `t[0] + k / rate` up to
-    /// `t[last] + 0.5 / rate` (NumPy: `arange(t[0], t[-1] + 0.5 / rate, 1 / rate)`). A part given
-    /// by time is cut from the grid of the whole log; one given by rows has its own.
+    /// `t[last] + 0.5 / rate` (NumPy: `arange(t[0], t[-1] + 0.5 / rate, 1 / rate)`), and not
+    /// beyond the end of the part.
     pub fn of(
         table: &Table,
         part: Part,
@@ -70,7 +70,7 @@ impl Grid {
             });
         }
         let len = length(&stamps, rate_hz)?;
-        let (start, len) = cut(table, part, rate_hz, (start, len));
+        let len = cut(part, rate_hz, start, len);
         report_irregular(&stamps, rate_hz, table, kept.as_deref(), warnings);
         Ok(Grid {
             rate_hz,
@@ -140,21 +140,17 @@ fn without_repeats(table: &Table, warnings: &mut Vec<String>) -> Found<Option<Ve
     ))
 }
 
-/// Start and length of the grid inside the part. Other parts of the log share the grid, so that
-/// joined parts hold no sample twice and miss none; up to half a step outside the rows, the first
-/// and the last value are held.
-fn cut(table: &Table, part: Part, rate_hz: f64, (start, len): (f64, usize)) -> (f64, usize) {
-    /// A grid point this near to a limit, in steps, lies on it.
+/// Length of the grid inside the part: the half step that the grid may reach beyond the last row
+/// must not reach beyond the part.
+fn cut(part: Part, rate_hz: f64, start: f64, len: usize) -> usize {
+    /// A grid point this near to the end, in steps, lies on it and is no part of it.
     const TIE: f64 = 1e-6;
-    let (Part::Seconds { from, to }, true) = (part, table.origin.is_finite()) else {
-        return (start, len);
-    };
-    let steps = |time: f64| (time - table.origin) * rate_hz;
-    let earliest = (steps(start) - 0.5).max(from.map_or(0.0, steps)).max(0.0);
-    let first = (earliest - TIE).ceil();
-    let last = steps(start) + len as f64;
-    let end = (to.map_or(last, |to| steps(to).min(last)) - TIE).ceil();
-    (table.origin + first / rate_hz, (end - first).max(0.0) as usize)
+    match part {
+        Part::Seconds { to: Some(to), .. } => {
+            len.min(((to - start) * rate_hz - TIE).ceil().max(0.0) as usize)
+        }
+        _ => len,
+    }
 }
 
 /// `len(numpy.arange(first, last + 0.5 / rate, 1 / rate))`, if it is a sensible number.

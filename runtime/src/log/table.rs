@@ -18,9 +18,6 @@ const FEWEST_ROWS: usize = 10;
 pub(super) struct Table {
     /// Data row of the first value, counted from [`FIRST_ROW`].
     pub first_row: usize,
-    /// Stamp of the first row of the file that was looked at, s: time grids are anchored there, so
-    /// that parts of one log lie on one grid.
-    pub origin: f64,
     /// One column per channel of the layout, in its units after the channel's factor.
     pub columns: Vec<Vec<f64>>,
 }
@@ -69,7 +66,7 @@ pub(super) fn read(
 ) -> Found<Table> {
     let columns = vec![Vec::new(); layout.channels.len()];
     let first_row = FIRST_ROW;
-    let mut table = Table { first_row, origin: f64::NAN, columns };
+    let mut table = Table { first_row, columns };
     let mut progress = Progress::default();
     let mut record = ByteRecord::new();
     while next(&mut source.rows, &mut record, progress.rows)? {
@@ -202,9 +199,6 @@ impl Progress {
             table.first_row = place.row;
         }
         if time.is_finite() {
-            if table.origin.is_nan() {
-                table.origin = time;
-            }
             self.previous = Some(time);
             let (low, high) = self.extent.unwrap_or((time, time));
             self.extent = Some((low.min(time), high.max(time)));

@@ -2,7 +2,7 @@
 
 use super::super::code;
 use super::super::description::{
-    DrivesSpec, EdgesSpec, IdentifySpec, PriorSpec, VelocitySpec, WeightsSpec,
+    DrivesSpec, EdgesSpec, FreedomSpec, IdentifySpec, PriorSpec, VelocitySpec, WeightsSpec,
 };
 use super::super::findings::{Findings, finding};
 use super::joint::Extras;
@@ -19,6 +19,11 @@ const WEIGHTS: [(&str, WeightsSpec); 3] = [
 const VELOCITY: [(&str, VelocitySpec); 2] = [
     ("derived", VelocitySpec::Derived),
     ("measured", VelocitySpec::Measured),
+];
+
+const FREEDOM: [(&str, FreedomSpec); 2] = [
+    ("parameters", FreedomSpec::Parameters),
+    ("mean", FreedomSpec::Mean),
 ];
 
 /// Highest order of the prefilter that a design is made for.
@@ -52,6 +57,7 @@ pub(super) fn identify(value: Value<'_>, to: &mut Findings) -> Option<IdentifySp
     let prefilter_torque = table
         .get("prefilter_torque")
         .and_then(|value| value::flag(value, &table.path("prefilter_torque"), to));
+    let degrees_of_freedom = choice(&mut table, "degrees_of_freedom", &FREEDOM, to);
     table.finish(to);
     Some(IdentifySpec {
         fq_hz,
@@ -63,6 +69,7 @@ pub(super) fn identify(value: Value<'_>, to: &mut Findings) -> Option<IdentifySp
         weights,
         velocity,
         prefilter_torque,
+        degrees_of_freedom,
     })
 }
 
