@@ -70,7 +70,7 @@ pub enum LogError {
     },
 }
 
-/// What is wrong with a log. Rows are data rows, counted from 1; lines are lines of the file.
+/// What is wrong with a log. Rows are data rows, counted from 0; lines are lines of the file.
 #[derive(Debug, thiserror::Error)]
 pub enum Problem {
     /// The file does not exist or may not be read.
