@@ -54,7 +54,12 @@ pub fn run<const N: usize>(
             })
         };
         let (q, qd, qdd) = (load(states.q), load(states.qd), load(states.qdd));
-        let mut sink = Sink { signals, stride: states.len, start, count };
+        let mut sink = Sink {
+            signals,
+            stride: states.len,
+            start,
+            count,
+        };
         evaluate(q, qd, qdd, &mut sink);
         start += count;
     }

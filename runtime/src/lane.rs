@@ -85,12 +85,12 @@ mod tests {
         for quad in samples.chunks_exact(4) {
             let lanes = f64x4::from([quad[0], quad[1], quad[2], quad[3]]);
             let (sin, cos) = Lane::sin_cos(lanes);
-            for i in 0..4 {
-                assert!((sin.to_array()[i] - quad[i].sin()).abs() <= 2.0 * f64::EPSILON);
-                assert!((cos.to_array()[i] - quad[i].cos()).abs() <= 2.0 * f64::EPSILON);
-                assert_eq!(Lane::sign(lanes).to_array()[i], Lane::sign(quad[i]));
-                assert_eq!(Lane::abs(lanes).to_array()[i], quad[i].abs());
-                assert_eq!(Lane::tanh(lanes).to_array()[i], quad[i].tanh());
+            for (i, &x) in quad.iter().enumerate() {
+                assert!((sin.to_array()[i] - x.sin()).abs() <= 2.0 * f64::EPSILON);
+                assert!((cos.to_array()[i] - x.cos()).abs() <= 2.0 * f64::EPSILON);
+                assert_eq!(Lane::sign(lanes).to_array()[i], Lane::sign(x));
+                assert_eq!(Lane::abs(lanes).to_array()[i], x.abs());
+                assert_eq!(Lane::tanh(lanes).to_array()[i], x.tanh());
             }
         }
     }

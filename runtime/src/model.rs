@@ -87,8 +87,13 @@ pub enum Output {
 
 impl Output {
     /// All outputs, in a fixed order.
-    pub const ALL: [Output; 5] =
-        [Output::Explicit, Output::Momentum, Output::Rest, Output::Energy, Output::Power];
+    pub const ALL: [Output; 5] = [
+        Output::Explicit,
+        Output::Momentum,
+        Output::Rest,
+        Output::Energy,
+        Output::Power,
+    ];
 }
 
 /// One structurally non-zero entry of an output.
