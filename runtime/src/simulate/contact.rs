@@ -75,6 +75,7 @@ impl Dynamics<'_> {
                 Contact::Sticks
             };
         }
+        self.rank = 0;
         if self.resting.is_empty() {
             return Ok(());
         }
@@ -89,7 +90,6 @@ impl Dynamics<'_> {
             let k = self.active[i];
             contacts[k] = self.resting(i, self.fractions[k]);
         }
-        self.keep_independent(contacts);
         self.confirm(contacts);
         Ok(())
     }
@@ -132,15 +132,16 @@ impl Dynamics<'_> {
     }
 
     /// Of sticking surfaces that depend on each other (both joints of a wrist and their sum), the
-    /// later ones keep their present friction: their sum is all that the motion can tell.
+    /// later ones keep their present friction: their sum is all that the motion can tell. Keeps an
+    /// orthonormal basis of the directions that stick.
     fn keep_independent(&mut self, contacts: &mut [Contact]) {
         let n = self.joints();
-        let mut rank = 0;
+        self.rank = 0;
         for &k in &self.resting {
             if contacts[k] != Contact::Sticks {
                 continue;
             }
-            let (basis, rest) = self.basis.split_at_mut(rank * n);
+            let (basis, rest) = self.basis.split_at_mut(self.rank * n);
             let residual = &mut rest[..n];
             residual.copy_from_slice(&self.surfaces[k].direction);
             for unit in basis.chunks_exact(n) {
@@ -153,7 +154,7 @@ impl Dynamics<'_> {
                 continue;
             }
             residual.iter_mut().for_each(|x| *x /= norm);
-            rank += 1;
+            self.rank += 1;
         }
     }
 
@@ -163,6 +164,7 @@ impl Dynamics<'_> {
         let n = self.joints();
         let mut qdd = std::mem::take(&mut self.trial);
         for _ in 0..=self.resting.len() {
+            self.keep_independent(contacts);
             qdd.copy_from_slice(&self.free);
             self.active.clear();
             for &k in &self.resting {

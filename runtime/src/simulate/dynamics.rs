@@ -3,7 +3,7 @@
 use super::contact::Contact;
 use super::error::SimulateError;
 use super::lanes::Lanes;
-use super::linear::{add, dot, eliminate, factor, solve};
+use super::linear::{add, factor, solve};
 use super::surface::{Surface, find};
 use crate::model::{Entry, IdentificationModel, Output};
 
@@ -11,20 +11,20 @@ use crate::model::{Entry, IdentificationModel, Output};
 /// (the interpreter of a description allocates inside its own evaluation).
 pub struct Dynamics<'a> {
     pub(super) model: &'a dyn IdentificationModel,
-    parameters: Vec<f64>,
+    pub(super) parameters: Vec<f64>,
     momentum: Lanes,
     inertia: Vec<Entry>,
-    explicit: Lanes,
-    smooth: Vec<Entry>,
+    pub(super) explicit: Lanes,
+    pub(super) smooth: Vec<Entry>,
     pub(super) surfaces: Vec<Surface>,
     /// First state of each surface in `explicit`.
-    places: Vec<usize>,
+    pub(super) places: Vec<usize>,
     /// M, n x n, row-major, and its Cholesky factor.
     mass: Vec<f64>,
-    factor: Vec<f64>,
-    bias: Vec<f64>,
+    pub(super) factor: Vec<f64>,
+    pub(super) bias: Vec<f64>,
     /// Half the jump of the torque on each surface that is not slid on, and M^-1 times it; K x n.
-    jumps: Vec<f64>,
+    pub(super) jumps: Vec<f64>,
     pub(super) responses: Vec<f64>,
     /// Friction on each surface as a fraction of its half jump, -1 to 1 where it sticks.
     pub(super) fractions: Vec<f64>,
@@ -35,8 +35,9 @@ pub struct Dynamics<'a> {
     pub(super) unknowns: Vec<f64>,
     pub(super) free: Vec<f64>,
     pub(super) trial: Vec<f64>,
-    /// Orthonormal directions, K x n.
+    /// Orthonormal directions that all surfaces that stick span, as rows; their number.
     pub(super) basis: Vec<f64>,
+    pub(super) rank: usize,
 }
 
 impl<'a> Dynamics<'a> {
@@ -76,6 +77,7 @@ impl<'a> Dynamics<'a> {
             free: vec![0.0; n],
             trial: vec![0.0; n],
             basis: vec![0.0; k * n],
+            rank: 0,
             surfaces,
         })
     }
@@ -197,104 +199,6 @@ impl<'a> Dynamics<'a> {
                 *element += parameter * self.momentum.signal(entry.signal, j);
             }
         }
-    }
-
-    /// Bias with the friction of all sliding surfaces and the middle of all others; their jumps.
-    pub(super) fn forces(&mut self, contacts: &[Contact], q: &[f64], qd: &[f64]) {
-        let mut len = 1;
-        for ((surface, contact), place) in self.surfaces.iter().zip(contacts).zip(&mut self.places)
-        {
-            let states = contact.states(surface.speed(qd));
-            *place = if states == 0 { 0 } else { len };
-            len += states;
-        }
-        self.explicit.fill(len, q, qd);
-        for ((surface, contact), &place) in self.surfaces.iter().zip(contacts).zip(&self.places) {
-            match *contact {
-                Contact::Slides(_) if place == 0 => {}
-                Contact::Slides(side) => surface.side(&mut self.explicit, place, qd, side),
-                Contact::Sticks | Contact::Holds(_) => {
-                    surface.side(&mut self.explicit, place, qd, 1.0);
-                    surface.side(&mut self.explicit, place + 1, qd, -1.0);
-                }
-            }
-        }
-        self.explicit.run(self.model);
-        self.smooth_bias();
-        (0..contacts.len()).for_each(|k| self.friction(k, contacts[k]));
-    }
-
-    fn smooth_bias(&mut self) {
-        self.bias.fill(0.0);
-        for entry in &self.smooth {
-            let value = self.explicit.signal(entry.signal, 0);
-            self.bias[entry.row] += self.parameters[entry.column] * value;
-        }
-    }
-
-    /// Adds the friction of a surface to the bias, or sets its jump.
-    fn friction(&mut self, k: usize, contact: Contact) {
-        let (n, place) = (self.bias.len(), self.places[k]);
-        let jump = &mut self.jumps[k * n..][..n];
-        jump.fill(0.0);
-        for entry in &self.surfaces[k].entries {
-            let parameter = self.parameters[entry.column];
-            let here = self.explicit.signal(entry.signal, place);
-            if let Contact::Slides(_) = contact {
-                self.bias[entry.row] += parameter * here;
-                continue;
-            }
-            let there = self.explicit.signal(entry.signal, place + 1);
-            self.bias[entry.row] += parameter * 0.5 * (here + there);
-            jump[entry.row] += parameter * 0.5 * (here - there);
-        }
-    }
-
-    /// Acceleration that each active surface's jump would cause.
-    pub(super) fn respond(&mut self) {
-        let n = self.bias.len();
-        for &k in &self.active {
-            let response = &mut self.responses[k * n..][..n];
-            response.copy_from_slice(&self.jumps[k * n..][..n]);
-            solve(&self.factor, n, response);
-        }
-    }
-
-    /// Acceleration across each active surface by the jump of each: count x count, row-major.
-    pub(super) fn couple(&mut self) {
-        let (n, count) = (self.bias.len(), self.active.len());
-        for (i, &k) in self.active.iter().enumerate() {
-            for (l, &other) in self.active.iter().enumerate() {
-                let response = &self.responses[other * n..][..n];
-                self.coupling[i * count + l] = dot(&self.surfaces[k].direction, response);
-            }
-        }
-    }
-
-    /// Takes the acceleration across the active surfaces away; `qdd` is that without their
-    /// friction. The fractions of their friction that this takes are kept.
-    pub(super) fn stick(&mut self, qdd: &mut [f64]) {
-        let (n, count) = (self.bias.len(), self.active.len());
-        for (i, &k) in self.active.iter().enumerate() {
-            self.unknowns[i] = dot(&self.surfaces[k].direction, qdd);
-        }
-        eliminate(&mut self.coupling, count, &mut self.unknowns);
-        for (i, &k) in self.active.iter().enumerate() {
-            self.fractions[k] = self.unknowns[i];
-            add(qdd, -self.unknowns[i], &self.responses[k * n..][..n]);
-        }
-        // What rounding leaves would let a joint at rest creep.
-        self.active
-            .iter()
-            .for_each(|&k| self.surfaces[k].project(qdd));
-    }
-
-    /// M^-1 (tau - bias) with the forces last evaluated.
-    pub(super) fn release(&mut self, tau: &[f64]) {
-        for ((free, tau), bias) in self.free.iter_mut().zip(tau).zip(&self.bias) {
-            *free = tau - bias;
-        }
-        solve(&self.factor, self.bias.len(), &mut self.free);
     }
 
     fn check(&self, what: &'static str, values: &[f64]) -> Result<(), SimulateError> {

@@ -25,6 +25,7 @@ mod contact;
 mod controller;
 mod dynamics;
 mod error;
+mod forces;
 mod integrate;
 mod inverse;
 mod lanes;
