@@ -22,6 +22,7 @@ use crate::base::BaseError;
 use crate::describe::{self, Description, Diagnostic};
 use crate::emit;
 use crate::robot::Robot;
+use crate::source::Source;
 
 /// Collects robot descriptions and writes their modules to `OUT_DIR`.
 #[derive(Clone, Debug, Default)]
@@ -74,19 +75,6 @@ pub enum BuildError {
 fn list(diagnostics: &[Diagnostic]) -> String {
     let lines: Vec<String> = diagnostics.iter().map(Diagnostic::to_string).collect();
     lines.join("\n")
-}
-
-/// A robot with the texts that it was read from.
-#[derive(Clone, Debug)]
-pub struct Source {
-    /// File name of the description, without its folder.
-    pub file: String,
-    /// All texts by file name: the description first, then what it names.
-    pub texts: Vec<(String, String)>,
-    /// All files, for the build system to watch.
-    pub paths: Vec<PathBuf>,
-    /// The robot.
-    pub robot: Robot,
 }
 
 impl Builder {

@@ -14,6 +14,7 @@ pub mod emit;
 pub mod expr;
 pub mod mechanism;
 pub mod robot;
+pub mod source;
 
 pub use builder::{BuildError, Builder};
 pub use robot::Robot;

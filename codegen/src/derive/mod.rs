@@ -79,6 +79,8 @@ pub fn standard(graph: &mut Graph, mechanism: &Mechanism) -> StandardModel {
     let mut model = StandardModel::default();
     for link in 0..mechanism.joints.len() {
         motions.push(graph, mechanism);
+        names::motion(graph, link, &motions.links[link]);
+        names::movers(graph, link, &motions.movers[link]);
         inertial(graph, &motions, link, &mut model.parameters);
         model.ends.push(graph.nodes().len());
     }

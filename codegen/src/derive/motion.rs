@@ -4,8 +4,7 @@ use crate::expr::rotate::Rotator;
 use crate::expr::{Angle, AngleSum, Expr, Graph, Input};
 use crate::mechanism::{Joint, JointKind, Mechanism};
 
-use super::names;
-use super::vector::{Screw, Vec3, add, constant, cross, into_frame, zero};
+use super::vector::{AXES, Screw, Vec3, add, constant, cross, into_frame, zero};
 
 /// The motion of a link, components in its frame, about the origin of its frame.
 #[derive(Clone, Copy, Debug)]
@@ -67,8 +66,6 @@ impl Motions {
         let motion = step.motion(&parent);
         let above = joint.parent.map_or(&[][..], |parent| &self.movers[parent]);
         let movers = step.movers(above, &motion);
-        names::motion(graph, index, &motion);
-        names::movers(graph, index, &movers);
         self.links.push(motion);
         self.movers.push(movers);
     }
@@ -91,7 +88,7 @@ impl Step<'_> {
             let name = match axis {
                 0 if right => format!("d{number}"),
                 _ if right => format!("r{number}"),
-                _ => format!("p{number}{}", names::AXES[axis]),
+                _ => format!("p{number}{}", AXES[axis]),
             };
             let constant = self.graph.constant(value.abs());
             self.graph.name(constant, &name);

@@ -5,10 +5,7 @@
 use crate::expr::Graph;
 
 use super::motion::{Motion, Mover};
-use super::vector::Vec3;
-
-/// Names of the components of a vector.
-pub const AXES: [&str; 3] = ["x", "y", "z"];
+use super::vector::{AXES, Vec3};
 
 /// Names the motion of a link (links counted from 0 here, from 1 in names).
 pub fn motion(graph: &mut Graph, link: usize, m: &Motion) {

@@ -2,6 +2,9 @@
 
 use crate::expr::{Angle, AngleSum, Expr, Graph, rotate::Rotator};
 
+/// Names of the components of a vector.
+pub const AXES: [&str; 3] = ["x", "y", "z"];
+
 /// Three components.
 pub type Vec3 = [Expr; 3];
 

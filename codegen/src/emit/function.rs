@@ -3,6 +3,7 @@
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
+use super::comment;
 use super::statement::Writer;
 use crate::base::BaseParameter;
 use crate::derive::ParameterKind;
@@ -140,7 +141,7 @@ fn section(
             Literal::usize_unsuffixed(store.entry.row),
             Literal::usize_unsuffixed(store.entry.column),
         );
-        let note = super::module::note(&robot.base.parameters[store.entry.column].name);
+        let note = comment::note(&robot.base.parameters[store.entry.column].name);
         statements.extend(match store.matrix {
             true => quote! { #argument[#row][#column] = #value; #note },
             false => quote! { #argument[#column] = #value; #note },
@@ -149,7 +150,7 @@ fn section(
     if statements.is_empty() {
         return statements;
     }
-    let title = super::module::comment(&section.title);
+    let title = comment::comment(&section.title);
     quote! { #title #statements }
 }
 

@@ -2,7 +2,7 @@
 
 use quote::{format_ident, quote};
 
-use crate::builder::Source;
+use crate::source::Source;
 
 /// Source of the index module.
 ///

@@ -4,9 +4,8 @@ use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
 use super::function::{self, Target};
-use super::naming;
-use super::tables;
-use crate::expr::{AngleSum, Node, Operations, schedule};
+use super::{comment, state, tables};
+use crate::expr::Operations;
 use crate::robot::{Output, Robot};
 
 /// Version of the contract with the runtime that emitted code asks for.
@@ -24,68 +23,8 @@ pub fn rust(robot: &Robot) -> Result<String, String> {
             robot.mechanism.name
         )
     })?;
-    let text = comments(&prettyplease::unparse(&file));
+    let text = comment::set(&prettyplease::unparse(&file));
     Ok(format!("{}\n{text}", header(robot)))
-}
-
-/// A `//` comment on a line of its own, which token streams cannot carry: [`comments`] sets it.
-pub fn comment(text: &str) -> TokenStream {
-    let text = plain(text);
-    quote! { comment!(#text); }
-}
-
-/// A `//` comment at the end of the line before.
-pub fn note(text: &str) -> TokenStream {
-    let text = plain(text);
-    quote! { note!(#text); }
-}
-
-/// Text that a string literal carries unescaped.
-fn plain(text: &str) -> String {
-    text.chars()
-        .map(|c| {
-            if c.is_control() || c == '"' || c == '\\' {
-                ' '
-            } else {
-                c
-            }
-        })
-        .collect()
-}
-
-/// Sets the comments that [`comment`] and [`note`] stand for, and the blank lines between items.
-fn comments(text: &str) -> String {
-    let mut out: Vec<String> = Vec::new();
-    for line in text.lines() {
-        let trimmed = line.trim_start();
-        let indent = &line[..line.len() - trimmed.len()];
-        let quoted = |start: &str| trimmed.strip_prefix(start)?.strip_suffix("\");");
-        let before = out.last().map_or("", String::as_str);
-        if let Some(comment) = quoted("comment!(\"") {
-            if !before.ends_with('{') {
-                out.push(String::new());
-            }
-            out.push(format!("{indent}// {comment}"));
-        } else if let Some(note) = quoted("note!(\"") {
-            if let Some(last) = out.last_mut().filter(|last| last.len() + note.len() < 96) {
-                last.push_str(&format!(" // {note}"));
-            }
-        } else {
-            if starts_item(trimmed, before) && indent.is_empty() {
-                out.push(String::new());
-            }
-            out.push(line.to_owned());
-        }
-    }
-    out.push(String::new());
-    out.join("\n")
-}
-
-/// Whether a top-level line begins an item that a blank line sets off from the line before.
-fn starts_item(line: &str, before: &str) -> bool {
-    let ends = ["}", "};", "];", ");"].contains(&before) || before.starts_with("use ");
-    let documented = line.starts_with("///") && !before.starts_with("///") && !before.is_empty();
-    documented || (ends && !line.is_empty() && !line.starts_with("use ") && line != "}")
 }
 
 fn header(robot: &Robot) -> String {
@@ -131,7 +70,7 @@ fn header(robot: &Robot) -> String {
 fn file(robot: &Robot) -> TokenStream {
     let imports = imports();
     let constants = constants(robot);
-    let state = state(robot);
+    let state = state::state(robot);
     let functions = functions(robot);
     let statics = statics(robot);
     let model = model(robot);
@@ -172,125 +111,6 @@ fn constants(robot: &Robot) -> TokenStream {
         #[doc = " SHA-256 of the description."]
         pub const DESCRIPTION_HASH: &str = #hash;
     }
-}
-
-/// Sines and cosines that any output needs.
-fn trig(robot: &Robot) -> Vec<(usize, AngleSum, bool, bool)> {
-    let values: Vec<_> = Output::ALL
-        .into_iter()
-        .flat_map(|output| robot.entries(output))
-        .map(|entry| entry.value)
-        .collect();
-    let mut needed = schedule::order(&robot.graph, &values);
-    needed.sort_unstable();
-    let mut table: Vec<(usize, AngleSum, bool, bool)> = Vec::new();
-    for node in needed {
-        let (angle, sine) = match robot.graph.nodes()[node] {
-            Node::Sin(angle) => (angle, true),
-            Node::Cos(angle) => (angle, false),
-            _ => continue,
-        };
-        let place = match table.iter().position(|&(known, ..)| known == angle) {
-            Some(place) => place,
-            None => {
-                table.push((angle, robot.graph.angle(angle).clone(), false, false));
-                table.len() - 1
-            }
-        };
-        table[place].2 |= sine;
-        table[place].3 |= !sine;
-    }
-    table
-}
-
-fn state(robot: &Robot) -> TokenStream {
-    let table = trig(robot);
-    let mut fields = TokenStream::new();
-    let mut bindings = TokenStream::new();
-    let mut names = TokenStream::new();
-    for (_, angle, sine, cosine) in &table {
-        let [s, c] = ["s", "c"].map(|function| format_ident!("{}", naming::trig(function, angle)));
-        let text = angle_text(angle);
-        let sum = angle_tokens(angle);
-        let (bind_s, bind_c) = match (sine, cosine) {
-            (true, true) => (quote! { #s }, quote! { #c }),
-            (true, false) => (quote! { #s }, quote! { _ }),
-            _ => (quote! { _ }, quote! { #c }),
-        };
-        let sum = match angle.terms.len() == 1 && angle.offset.is_zero() {
-            true => sum,
-            false => quote! { (#sum) },
-        };
-        bindings.extend(quote! { let (#bind_s, #bind_c) = #sum.sin_cos(); });
-        for (wanted, name, function) in [(sine, &s, "sin"), (cosine, &c, "cos")] {
-            if *wanted {
-                let doc = format!(" {function}({text})");
-                fields.extend(quote! { #[doc = #doc] pub #name: T, });
-                names.extend(quote! { #name, });
-            }
-        }
-    }
-    quote! {
-        #[doc = " A state of the robot, with the sines and cosines that all outputs share."]
-        #[derive(Clone, Copy, Debug)]
-        pub struct State<T> {
-            #[doc = " Joint positions, rad or m."]
-            pub q: [T; JOINTS],
-            #[doc = " Joint velocities, rad/s or m/s."]
-            pub qd: [T; JOINTS],
-            #[doc = " Joint accelerations, rad/s^2 or m/s^2."]
-            pub qdd: [T; JOINTS],
-            #fields
-        }
-
-        impl<T: Lane> State<T> {
-            #[doc = " Computes each sine and cosine once."]
-            #[inline]
-            pub fn new(q: [T; JOINTS], qd: [T; JOINTS], qdd: [T; JOINTS]) -> Self {
-                #bindings
-                State { q, qd, qdd, #names }
-            }
-        }
-    }
-}
-
-fn angle_text(angle: &AngleSum) -> String {
-    let mut text = String::new();
-    for &(joint, sign) in &angle.terms {
-        let sign = match (text.is_empty(), sign < 0) {
-            (true, false) => "",
-            (true, true) => "-",
-            (false, false) => " + ",
-            (false, true) => " - ",
-        };
-        text.push_str(&format!("{sign}q{}", joint + 1));
-    }
-    if !angle.offset.is_zero() {
-        text.push_str(&format!(" + {}", angle.offset.text()));
-    }
-    text
-}
-
-fn angle_tokens(angle: &AngleSum) -> TokenStream {
-    let mut sum = TokenStream::new();
-    for (place, &(joint, sign)) in angle.terms.iter().enumerate() {
-        let joint = Literal::usize_unsuffixed(joint);
-        sum.extend(match (place, sign < 0) {
-            (0, false) => quote! { q[#joint] },
-            (0, true) => quote! { -q[#joint] },
-            (_, false) => quote! { + q[#joint] },
-            (_, true) => quote! { - q[#joint] },
-        });
-    }
-    if !angle.offset.is_zero() {
-        let value = angle.offset.value();
-        let size = Literal::f64_unsuffixed(value.abs());
-        sum.extend(match value < 0.0 {
-            true => quote! { - T::splat(#size) },
-            false => quote! { + T::splat(#size) },
-        });
-    }
-    sum
 }
 
 fn functions(robot: &Robot) -> TokenStream {
