@@ -8,6 +8,7 @@
 
 pub mod batch;
 pub mod estimate;
+pub mod evidence;
 pub mod identify;
 pub mod lane;
 pub mod log;

@@ -30,6 +30,17 @@ pub enum Failure {
     /// An identification that is not possible.
     #[error(transparent)]
     Identify(#[from] idim::runtime::identify::IdentifyError),
+    /// A simulation that is not possible.
+    #[error(transparent)]
+    Simulate(#[from] idim::runtime::simulate::SimulateError),
+    /// A file of parameters that cannot be used.
+    #[error("{path}: {message}")]
+    Parameters {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong, and where.
+        message: String,
+    },
     /// A result that could not be written.
     #[error("{path}: {source}")]
     Write {

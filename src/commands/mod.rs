@@ -10,6 +10,7 @@ mod identify;
 mod output;
 mod progress;
 mod robot;
+mod simulate;
 
 use std::process::ExitCode;
 
@@ -36,6 +37,8 @@ enum Command {
     Generate(generate::Arguments),
     /// Parameters of a robot from measured logs, with statistics and validation.
     Identify(Box<identify::Arguments>),
+    /// Motion of a robot with given parameters: closed loop along a reference, or open loop.
+    Simulate(simulate::Arguments),
 }
 
 /// Runs a command and shows what went wrong.
@@ -45,6 +48,7 @@ pub fn run(arguments: Arguments) -> ExitCode {
         Command::Describe(arguments) => describe::run(&arguments),
         Command::Generate(arguments) => generate::run(&arguments),
         Command::Identify(arguments) => identify::run(&arguments),
+        Command::Simulate(arguments) => simulate::run(&arguments),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,
