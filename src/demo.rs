@@ -149,6 +149,7 @@ fn inverse_dynamics(
 
 fn recording(motion: Motion, tau: Vec<Vec<f64>>) -> Recording {
     Recording {
+        doubtful: vec![],
         name: "the simulated SCARA".into(),
         stem: "scara".into(),
         rate_hz: RATE_HZ,

@@ -147,6 +147,7 @@ mod tests {
     fn log(hz: f64, rate_hz: f64, len: usize) -> Recording {
         let wave = |i| (std::f64::consts::TAU * hz * i as f64 / rate_hz).sin();
         Recording {
+            doubtful: vec![],
             name: "log.csv".into(),
             stem: "log".into(),
             rate_hz,

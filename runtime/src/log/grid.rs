@@ -1,6 +1,8 @@
 //! From stamps as they are to a uniform time grid: the rate, and whether samples may stay as they
 //! are.
 
+use std::ops::Range;
+
 use super::error::{Found, Problem};
 use super::rate::{fits, rate, shown};
 use super::resample;
@@ -79,6 +81,28 @@ impl Grid {
             kept,
             stamps: Some(stamps),
         })
+    }
+
+    /// The samples of the grid that the given rows (ascending ranges) enter.
+    pub fn samples(&self, stamps: &[f64], rows: &[Range<usize>]) -> Vec<Range<usize>> {
+        let place = |row: usize| {
+            stamps
+                .get(row)
+                .map_or(self.len as f64, |t| (t - self.start) * self.rate_hz)
+        };
+        let mut samples: Vec<Range<usize>> = Vec::new();
+        for range in rows {
+            // One row further on either side: interpolation reaches to the neighbours.
+            let from = place(range.start.saturating_sub(1)).floor().max(0.0) as usize;
+            let to = (place(range.end).ceil() + 1.0).max(0.0) as usize;
+            let to = to.min(self.len);
+            match samples.last_mut() {
+                Some(last) if from <= last.end => last.end = last.end.max(to),
+                _ if from < to => samples.push(from..to),
+                _ => {}
+            }
+        }
+        samples
     }
 
     /// Columns of the table on the grid.

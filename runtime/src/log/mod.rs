@@ -1,7 +1,7 @@
 //! From files as people have them to [`Recording`]s: checked, uniform in time, SI units.
 //!
 //! [`read`] follows one path: open ([`LogSpec`], gzip, separator) -> columns and units, with the
-//! help of the [`Companion`] -> rows of the part -> joint side of the drives -> checks -> uniform
+//! help of the [`Companion`] -> rows of the part -> joint side of the drives -> doubtful samples -> checks -> uniform
 //! time grid. [`write()`] and [`onto_stamps`] lead back from results to files.
 //!
 //! This module owns every file format of measured data; filters and models begin at [`Recording`].
@@ -9,6 +9,7 @@
 mod checks;
 pub mod closed_loop;
 mod columns;
+mod doubt;
 pub mod companion;
 mod drives;
 pub mod error;

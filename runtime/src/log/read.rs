@@ -1,11 +1,13 @@
 //! From a log and its companion to a checked [`Recording`].
 
+use std::ops::Range;
 use std::path::PathBuf;
 
 use super::checks::Motion;
 use super::closed_loop::Reference;
 use super::columns::{self, Group, Layout};
 use super::companion::Companion;
+use super::doubt;
 use super::drives;
 use super::error::{Found, LogError, Problem};
 use super::grid::Grid;
@@ -76,6 +78,13 @@ pub fn read(
     check_finite(&table, &layout.channels, 0..1).map_err(in_log)?;
     let grid = Grid::of(&table, spec.part, companion.rate_hz, &mut warnings).map_err(in_log)?;
     let mut rows = Rows::of(table, &layout, drives, options, &mut warnings).map_err(in_log)?;
+    let doubtful = doubt::bridge(
+        &rows.table,
+        joints,
+        &mut rows.q,
+        rows.tau.as_deref_mut(),
+        &mut warnings,
+    );
     rows.motion()
         .check(joints, companion.encoder_resolution, &mut warnings);
     if let (None, Some(q_ref)) = (&companion.reference, rows.q_ref.take()) {
@@ -83,7 +92,7 @@ pub fn read(
             q: grid.apply(q_ref),
         });
     }
-    Ok((rows.recording(spec, &grid, warnings), companion))
+    Ok((rows.recording(spec, &grid, &doubtful, warnings), companion))
 }
 
 fn companion(spec: &LogSpec, options: &ReadOptions) -> Result<Companion, LogError> {
@@ -147,8 +156,16 @@ impl Rows {
         })
     }
 
-    fn recording(self, spec: &LogSpec, grid: &Grid, warnings: Vec<String>) -> Recording {
+    fn recording(
+        self,
+        spec: &LogSpec,
+        grid: &Grid,
+        doubtful: &[Range<usize>],
+        warnings: Vec<String>,
+    ) -> Recording {
+        let doubtful = grid.samples(self.table.stamps(), doubtful);
         Recording {
+            doubtful,
             name: spec.name.clone(),
             stem: spec.stem(),
             rate_hz: grid.rate_hz,
@@ -195,7 +212,9 @@ fn check_finite(table: &Table, channels: &[Channel], group: std::ops::Range<usiz
                 .filter(|(_, value)| !value.is_finite())
         };
         let count = bad().count();
-        if count > 0 {
+        // A few can be bridged; in the time there is nothing to bridge from.
+        let bearable = if place == 0 { 0.0 } else { doubt::BEARABLE };
+        if count as f64 > bearable * values.len() as f64 {
             let rows = bad()
                 .take(LISTED)
                 .map(|(k, _)| (table.first_row + k).to_string());

@@ -57,6 +57,7 @@ mod tests {
 
     fn recording(stamps: Vec<f64>, rate_hz: f64, len: usize) -> Recording {
         Recording {
+            doubtful: vec![],
             name: String::new(),
             stem: String::new(),
             rate_hz,

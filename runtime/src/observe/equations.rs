@@ -1,5 +1,7 @@
 //! The equations Y = W X of each joint, or of the power balance.
 
+use std::ops::Range;
+
 use super::{Filtering, ModelKind, Motion, ObserveError, decimated};
 use crate::model::IdentificationModel;
 use crate::signal::Decimator;
@@ -39,8 +41,17 @@ pub fn observe(
 ) -> Result<Observations, ObserveError> {
     let fail = ObserveError::filter(&motion.log, "parallel filter");
     let decimator = filtering.decimator(motion.rate_hz).map_err(&fail)?;
-    let kept = decimator.kept(motion.len).len();
-    let keep = rows_kept(&motion.log, kept, filtering.cut_after())?;
+    let kept = decimator.kept(motion.len);
+    let within = rows_kept(&motion.log, kept.len(), filtering.cut_after())?;
+    let doubtful = doubtful(motion, filtering);
+    let keep: Vec<usize> = within
+        .filter(|&row| doubtful.iter().all(|range| !range.contains(&kept[row])))
+        .collect();
+    if keep.is_empty() {
+        return Err(ObserveError::NothingBelieved {
+            log: motion.log.clone(),
+        });
+    }
     let mut blocks = empty_blocks(model, kind, keep.len());
     for &term in kind.terms() {
         let signals = decimated(model, term, motion, &decimator).map_err(&fail)?;
@@ -48,12 +59,12 @@ pub fn observe(
             let Some(block) = blocks.get_mut(entry.row) else {
                 continue;
             };
-            block.add(entry.column, &signals[entry.signal][keep.clone()]);
+            block.add(entry.column, &pick(&signals[entry.signal], &keep));
         }
     }
     if let Some(y) = measurements(kind, motion, &decimator).map_err(&fail)? {
         for (block, y) in blocks.iter_mut().zip(y) {
-            block.y = Some(y[keep.clone()].to_vec());
+            block.y = Some(pick(&y, &keep));
         }
     }
     Ok(Observations {
@@ -127,8 +138,27 @@ impl Equations {
     }
 }
 
+fn pick(signal: &[f64], keep: &[usize]) -> Vec<f64> {
+    keep.iter().map(|&row| signal[row]).collect()
+}
+
+/// The samples that doubtful ones reach through the filters; short bridges leave no trace.
+fn doubtful(motion: &Motion, filtering: &Filtering) -> Vec<Range<usize>> {
+    let (reach, short) = (
+        filtering.reach(motion.rate_hz),
+        filtering.bridgeable(motion.rate_hz),
+    );
+    let long = motion.doubtful.iter().filter(|range| range.len() > short);
+    long.map(|range| range.start.saturating_sub(reach)..range.end.saturating_add(reach))
+        .collect()
+}
+
 /// The decimated rows that remain after cutting `cut` at either end.
-fn rows_kept(log: &str, rows: usize, cut: usize) -> Result<std::ops::Range<usize>, ObserveError> {
+pub(super) fn rows_kept(
+    log: &str,
+    rows: usize,
+    cut: usize,
+) -> Result<std::ops::Range<usize>, ObserveError> {
     match cut.saturating_mul(2) {
         both if both < rows => Ok(cut..rows - cut),
         both => Err(ObserveError::NothingLeft {

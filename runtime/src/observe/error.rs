@@ -5,6 +5,15 @@ use crate::signal::SignalError;
 /// Why a log cannot be turned into observations. `log` is the recording's name.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ObserveError {
+    /// Every row of W lies near samples that cannot be believed.
+    #[error(
+        "{log}: no equation is left, since every one lies near samples that cannot be believed \
+         (see the warnings); use another part of the log"
+    )]
+    NothingBelieved {
+        /// Name of the log.
+        log: String,
+    },
     /// The log and the robot have different numbers of joints.
     #[error(
         "{log}: the log has {has} joints and the robot {needs}; \

@@ -42,7 +42,7 @@ impl Filtering {
     }
 
     /// Samples cut off at the start and at the end before the parallel filter.
-    pub(super) fn cut_before(&self) -> (usize, usize) {
+    pub(crate) fn cut_before(&self) -> (usize, usize) {
         let trim = match self.edges {
             Edges::Scipy => self.trim,
             Edges::Matlab => 0,
@@ -51,6 +51,20 @@ impl Filtering {
             self.border.0.saturating_add(trim),
             self.border.1.saturating_add(trim),
         )
+    }
+
+    /// Samples on either side of a kept one that the filters gather into it, but for traces: four
+    /// decimated rows of the parallel filter and a period of the prefilter's cut-off.
+    pub(super) fn reach(&self, rate_hz: f64) -> usize {
+        self.nd
+            .saturating_mul(4)
+            .saturating_add((rate_hz / self.fq_hz) as usize)
+    }
+
+    /// Bridges over this many samples are too short to be seen behind the prefilter: a tenth of
+    /// the period of its cut-off.
+    pub(super) fn bridgeable(&self, rate_hz: f64) -> usize {
+        (0.1 * rate_hz / self.fq_hz) as usize + 3
     }
 
     /// Decimated rows cut off at either end after the parallel filter.

@@ -1,5 +1,7 @@
 //! Filtered motion: position, velocity, acceleration and torque at the full rate.
 
+use std::ops::Range;
+
 use super::{Filtering, ObserveError};
 use crate::log::Recording;
 use crate::settings::Velocity;
@@ -27,6 +29,8 @@ pub struct Motion {
     pub qdd: Vec<Vec<f64>>,
     /// Torques, N m or N, if the log has them.
     pub tau: Option<Vec<Vec<f64>>>,
+    /// Samples that cannot be believed, ascending and disjoint; see [`Recording::doubtful`].
+    pub doubtful: Vec<Range<usize>>,
     /// Joints that never move, counted from 0; they are held at their mean position.
     pub resting: Vec<usize>,
 }
@@ -85,6 +89,7 @@ impl Motion {
             qd,
             qdd,
             tau,
+            doubtful: recording.doubtful.clone(),
             resting: Vec::new(),
         };
         motion.hold_resting_joints(&recording.q);
@@ -105,6 +110,12 @@ impl Motion {
         }
         let keep = start..self.len - end;
         self.len = keep.len();
+        let shifted = |i: usize| i.saturating_sub(keep.start).min(self.len);
+        let doubtful = self
+            .doubtful
+            .iter()
+            .map(|range| shifted(range.start)..shifted(range.end));
+        self.doubtful = doubtful.filter(|range| !range.is_empty()).collect();
         let series = self.q.iter_mut().chain(&mut self.qd).chain(&mut self.qdd);
         for values in series.chain(self.tau.iter_mut().flatten()) {
             *values = values[keep.clone()].to_vec();

@@ -45,6 +45,7 @@ impl Simulation {
             len,
         } = self.grid;
         Recording {
+            doubtful: vec![],
             name: name.to_owned(),
             stem: name.to_owned(),
             rate_hz,

@@ -13,6 +13,7 @@ fn log() -> Recording {
             .collect()
     };
     Recording {
+        doubtful: vec![],
         name: "log".into(),
         stem: "log".into(),
         rate_hz: 100.0,

@@ -39,6 +39,7 @@ pub fn recording(path: &str, joints: usize, rate_hz: f64) -> Option<Recording> {
             .collect()
     };
     Some(Recording {
+        doubtful: vec![],
         name: path.to_owned(),
         stem: "log".to_owned(),
         rate_hz,

@@ -46,6 +46,7 @@ prop_compose! {
         len in Just(len),
     ) -> Recording {
         Recording {
+            doubtful: vec![],
             name: "log".into(), stem: "log".into(), rate_hz, start: 0.0, len,
             q, qd, tau, stamps: Vec::new(), warnings: Vec::new(),
         }

@@ -36,6 +36,7 @@ pub fn motion(name: &str, seed: f64, len: usize) -> Recording {
             .collect()
     };
     Recording {
+        doubtful: vec![],
         name: name.to_owned(),
         stem: name.to_owned(),
         rate_hz,

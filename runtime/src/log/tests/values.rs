@@ -25,16 +25,34 @@ fn number_that_is_none_is_located() {
 }
 
 #[test]
-fn values_that_are_not_finite_are_counted_and_located() {
+fn values_that_are_not_finite_are_bridged_and_located_and_many_are_refused() {
+    let clean = good(&clean());
+    let names = ["position", "position", "torque", "torque"];
     for (value, column) in [("NaN", 1), ("", 2), ("inf", 3), ("-Infinity", 4)] {
-        let text = log(|row, fields| {
-            if [5, 6, 100, 150].contains(&row) {
-                fields[column] = value.into();
-            }
-        });
+        let text = |rows: &[usize]| {
+            log(|row, fields| {
+                if rows.contains(&row) {
+                    fields[column] = value.into();
+                }
+            })
+        };
+        let bridged = good(&text(&[5, 6, 100, 150]));
+        let said = format!(
+            "{} is no number in 4 rows (4 to 5, 99, 149)",
+            names[column - 1]
+        );
+        assert_says(&bridged.warnings.join("\n"), &[&said]);
+        assert_eq!(bridged.doubtful, [3..7, 98..101, 148..151]);
+        let error = |a: &[Vec<f64>], b: &[Vec<f64>]| {
+            let pairs = a.iter().flatten().zip(b.iter().flatten());
+            pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+        };
+        assert!(error(&bridged.q, &clean.q) < 1e-3);
+        assert!(error(&bridged.tau.unwrap(), clean.tau.as_ref().unwrap()) < 0.1);
+        let many: Vec<usize> = (1..=200).step_by(7).collect();
         assert_says(
-            &message(&text),
-            &["values missing, NaN or infinite: 4", "4, 5, 99, ..."],
+            &message(&text(&many)),
+            &["values missing, NaN or infinite: 29", "0, 7, 14, ..."],
         );
     }
     let text = log(|row, fields| {

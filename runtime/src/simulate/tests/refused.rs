@@ -190,6 +190,7 @@ fn recording() -> Recording {
             .collect()
     };
     Recording {
+        doubtful: vec![],
         name: "log".into(),
         stem: "log".into(),
         rate_hz: 500.0,

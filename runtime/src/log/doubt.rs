@@ -1,0 +1,294 @@
+//! Samples that cannot be believed: values that are no numbers, spikes, an encoder that stands
+//! still while the joint moves, torque at its limit.
+//!
+//! Each is found, named with its rows, and bridged by a straight line, so that filters have
+//! something finite to run over; what long bridges touch is left out of the equations.
+
+use std::ops::Range;
+
+use super::table::Table;
+use crate::model::Joint;
+
+/// More than this fraction of bad values in one channel is no accident: the log is refused.
+pub(super) const BEARABLE: f64 = 0.1;
+
+/// A spike stands out of its neighbours by more than this fraction of the signal's range ...
+const SPIKE_OF_RANGE: f64 = 0.5;
+
+/// ... and by more than this many times what such deviations usually are.
+const SPIKE_OF_SCATTER: f64 = 30.0;
+
+/// ... and by more than this many times the smallest step: at rest, an encoder's last digit is all
+/// the range there is.
+const SPIKE_OF_RESOLUTION: f64 = 20.0;
+
+/// An encoder is stuck when its value repeats for this many rows and more ...
+const STUCK_ROWS: usize = 8;
+
+/// ... and then jumps by more than this many times a fast step.
+const STUCK_JUMP: f64 = 8.0;
+
+/// What was found in one channel, as rows of the table.
+struct Finding {
+    what: &'static str,
+    ranges: Vec<Range<usize>>,
+}
+
+/// Finds and bridges the bad samples of all joints; the rows they touch, ascending and disjoint.
+pub(super) fn bridge(
+    table: &Table,
+    joints: &[Joint],
+    q: &mut [Vec<f64>],
+    tau: Option<&mut [Vec<f64>]>,
+    warnings: &mut Vec<String>,
+) -> Vec<Range<usize>> {
+    let mut rows = Vec::new();
+    let mut channel = |quantity: &str, joint: usize, series: &mut [f64], stuck: bool| {
+        let mut findings = vec![Finding {
+            what: "no number",
+            ranges: no_numbers(series),
+        }];
+        join(series, &findings[0].ranges);
+        findings.push(Finding {
+            what: "a spike",
+            ranges: spikes(series),
+        });
+        join(series, &findings[1].ranges);
+        if stuck {
+            findings.push(Finding {
+                what: "stuck",
+                ranges: stuck_runs(series),
+            });
+            join(series, &findings[2].ranges);
+        }
+        for finding in findings
+            .into_iter()
+            .filter(|finding| !finding.ranges.is_empty())
+        {
+            let name = joints.get(joint).map_or("", |joint| joint.name.as_ref());
+            warnings.push(sentence(
+                table,
+                &format!("Joint {} (`{name}`)", joint + 1),
+                quantity,
+                &finding,
+            ));
+            rows.extend(finding.ranges);
+        }
+    };
+    for (joint, series) in q.iter_mut().enumerate() {
+        channel("position", joint, series, true);
+    }
+    for (joint, series) in tau.into_iter().flatten().enumerate() {
+        channel("torque", joint, series, false);
+    }
+    united(rows)
+}
+
+fn sentence(table: &Table, joint: &str, quantity: &str, finding: &Finding) -> String {
+    const LISTED: usize = 3;
+    let count: usize = finding.ranges.iter().map(Range::len).sum();
+    let places: Vec<String> = finding
+        .ranges
+        .iter()
+        .take(LISTED)
+        .map(|range| match range.len() {
+            1 => (table.first_row + range.start).to_string(),
+            _ => format!(
+                "{} to {}",
+                table.first_row + range.start,
+                table.first_row + range.end - 1
+            ),
+        })
+        .collect();
+    let more = if finding.ranges.len() > LISTED {
+        ", ..."
+    } else {
+        ""
+    };
+    format!(
+        "{joint}: the {quantity} is {} in {count} row{} ({}{more}); bridged by straight lines; \
+         equations near long bridges are left out.",
+        finding.what,
+        if count == 1 { "" } else { "s" },
+        places.join(", ")
+    )
+}
+
+/// Runs of values that are not finite.
+fn no_numbers(series: &[f64]) -> Vec<Range<usize>> {
+    united(
+        (0..series.len())
+            .filter(|&i| !series[i].is_finite())
+            .map(|i| i..i + 1)
+            .collect(),
+    )
+}
+
+/// Samples far out of the median of five: a step of dry friction or of a fast move is not, since
+/// at least three of the five lie on its side.
+fn spikes(series: &[f64]) -> Vec<Range<usize>> {
+    if series.len() < 5 {
+        return Vec::new();
+    }
+    let last = series.len() - 1;
+    let smooth: Vec<f64> = (0..series.len())
+        .map(|i| {
+            let centre = i.clamp(2, last - 2);
+            median(&mut [-2isize, -1, 0, 1, 2].map(|k| series[centre.saturating_add_signed(k)]))
+        })
+        .collect();
+    let rest: Vec<f64> = series
+        .iter()
+        .zip(&smooth)
+        .map(|(x, s)| (x - s).abs())
+        .collect();
+    let low = smooth.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = smooth.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    // The mean of the usual deviations, not their median: in a clean signal most are zero.
+    let usual = quantile(&rest, 0.99).max(f64::MIN_POSITIVE);
+    let limit = (SPIKE_OF_RANGE * (high - low))
+        .max(SPIKE_OF_SCATTER * usual)
+        .max(SPIKE_OF_RESOLUTION * resolution(series));
+    united(
+        (0..series.len())
+            .filter(|&i| rest[i] > limit)
+            .map(|i| i..i + 1)
+            .collect(),
+    )
+}
+
+/// The smallest step between neighbours that differ.
+fn resolution(series: &[f64]) -> f64 {
+    let steps = series.windows(2).map(|pair| (pair[1] - pair[0]).abs());
+    let smallest = steps
+        .filter(|&step| step > 0.0)
+        .fold(f64::INFINITY, f64::min);
+    if smallest.is_finite() { smallest } else { 0.0 }
+}
+
+/// Runs of one value that end in a jump: the joint moved on while the encoder did not.
+fn stuck_runs(series: &[f64]) -> Vec<Range<usize>> {
+    let steps: Vec<f64> = series
+        .windows(2)
+        .map(|pair| (pair[1] - pair[0]).abs())
+        .collect();
+    let fast = quantile(&steps, 0.95);
+    if fast == 0.0 {
+        return Vec::new();
+    }
+    let mut runs = Vec::new();
+    let mut start = 0;
+    for i in 1..=series.len() {
+        if i < series.len() && series[i] == series[start] {
+            continue;
+        }
+        let jump = series
+            .get(i)
+            .map_or(0.0, |next| (next - series[start]).abs());
+        if i - start >= STUCK_ROWS && jump > STUCK_JUMP * fast {
+            runs.push(start + 1..i);
+        }
+        start = i;
+    }
+    runs
+}
+
+/// Replaces the values of each range by the straight line between its neighbours; at an end of the
+/// series, by the one neighbour there is.
+fn join(series: &mut [f64], ranges: &[Range<usize>]) {
+    for range in ranges {
+        let before = range.start.checked_sub(1).map(|i| series[i]);
+        let after = series.get(range.end).copied();
+        let (from, to) = match (before, after) {
+            (Some(before), Some(after)) => (before, after),
+            (Some(one), None) | (None, Some(one)) => (one, one),
+            (None, None) => return,
+        };
+        let steps = (range.len() + 1) as f64;
+        for (k, value) in series[range.clone()].iter_mut().enumerate() {
+            *value = from + (to - from) * (k + 1) as f64 / steps;
+        }
+    }
+}
+
+/// Ascending disjoint ranges over the same places.
+fn united(mut ranges: Vec<Range<usize>>) -> Vec<Range<usize>> {
+    ranges.sort_by_key(|range| range.start);
+    let mut all: Vec<Range<usize>> = Vec::new();
+    for range in ranges {
+        match all.last_mut() {
+            Some(last) if range.start <= last.end => last.end = last.end.max(range.end),
+            _ => all.push(range),
+        }
+    }
+    all
+}
+
+fn median(values: &mut [f64; 5]) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values[2]
+}
+
+fn quantile(values: &[f64], fraction: f64) -> f64 {
+    let mut sorted = values.to_vec();
+    let place = ((sorted.len().saturating_sub(1)) as f64 * fraction) as usize;
+    if sorted.is_empty() {
+        return 0.0;
+    }
+    *sorted.select_nth_unstable_by(place, f64::total_cmp).1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn motion(rows: usize) -> Vec<f64> {
+        (0..rows).map(|i| (0.01 * i as f64).sin()).collect()
+    }
+
+    #[test]
+    fn spikes_are_found_and_steps_of_friction_are_not() {
+        let mut torque: Vec<f64> = motion(2000)
+            .iter()
+            .map(|x| 0.1 * x + 5.0 * x.signum())
+            .collect();
+        assert_eq!(spikes(&torque), []);
+        torque[700] *= 100.0;
+        torque[1500] = -400.0;
+        assert_eq!(spikes(&torque), [700..701, 1500..1501]);
+    }
+
+    #[test]
+    fn last_digit_of_a_resting_encoder_is_no_spike() {
+        let mut q = vec![0.2; 500];
+        q[100] += 1e-4;
+        q[300] -= 2e-4;
+        assert_eq!(spikes(&q), []);
+    }
+
+    #[test]
+    fn encoder_that_is_stuck_is_found_and_one_that_rests_is_not() {
+        let mut q = motion(2000);
+        let held = q[300];
+        q[300..500].fill(held);
+        assert_eq!(stuck_runs(&q), vec![301..500]);
+        // At rest and then smoothly on its way again.
+        let mut resting = vec![0.0; 400];
+        resting.extend((0..600).map(|i| 1.0 - (0.01 * f64::from(i)).cos()));
+        assert_eq!(stuck_runs(&resting), []);
+    }
+
+    #[test]
+    fn bridge_of_a_straight_line_is_that_line() {
+        let line: Vec<f64> = (0..50).map(|i| 3.0 - 0.5 * f64::from(i)).collect();
+        let mut broken = line.clone();
+        broken[10] = f64::NAN;
+        broken[20..25].fill(f64::INFINITY);
+        let ranges = no_numbers(&broken);
+        assert_eq!(ranges, vec![10..11, 20..25]);
+        join(&mut broken, &ranges);
+        for (a, b) in broken.iter().zip(&line) {
+            assert!((a - b).abs() < 1e-13);
+        }
+    }
+}
