@@ -2,7 +2,7 @@
 //!
 //! For each time block b and each joint j, [`Evidence`] holds the triangular factor R of
 //! \\( [W_{jb} | C_{jb} | Y_{jb}] \\): the columns that the joint can see, candidate columns on
-//! trial, and the measurements. Because \\( \|Y - W X\| = \|R (−X; 1)\| \\) for every X, estimates
+//! trial, and the measurements. Because \\( \|Y - W X\| = \|R (-X; 1)\| \\) for every X, estimates
 //! ([`Evidence::fit`]), tests of columns ([`Evidence::drop_test`]), prediction errors on data left
 //! out ([`Evidence::cross_validate`]) and error bars under correlated residuals
 //! ([`Evidence::corrected`], [`Evidence::bootstrap`]) follow without the log. Pieces from several
@@ -22,6 +22,7 @@ mod cross;
 mod distribution;
 mod dropping;
 mod error;
+mod essential;
 mod file;
 mod fit;
 mod gather;
@@ -43,6 +44,7 @@ pub use cross::{CrossValidation, HeldOut};
 pub use distribution::{f_survival, student_quantile};
 pub use dropping::FTest;
 pub use error::{EvidenceError, FormatError};
+pub use essential::{Dropped, Essential};
 pub use file::VERSION;
 pub use fit::Fit;
 pub use gather::{Candidate, Cut};

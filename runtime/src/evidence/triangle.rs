@@ -3,7 +3,7 @@
 use super::kernel::{Column, ROWS, fold};
 
 /// Upper triangular factor R of a matrix A of `rows` x `width`, in the field's use `[W | Y]`:
-/// \\( R^T R = A^T A \\), so that \\( \|Y - W X\| = \|R (−X; 1)\| \\) for every X, whatever the
+/// \\( R^T R = A^T A \\), so that \\( \|Y - W X\| = \|R (-X; 1)\| \\) for every X, whatever the
 /// number of rows. The diagonal is not negative, which makes the factor unique.
 ///
 /// Units: those of the columns. The factor comes from Householder reflections, never from
@@ -70,7 +70,7 @@ impl Triangle {
             .sqrt()
     }
 
-    /// \\( R (−x; 1) \\): the residual of the last column in the coordinates of the factor,
+    /// \\( R (-x; 1) \\): the residual of the last column in the coordinates of the factor,
     /// `width` values; `x` has `width - 1`.
     pub fn residual(&self, x: &[f64]) -> Vec<f64> {
         let residual = |i: usize| {

@@ -2,7 +2,9 @@
 
 mod answers;
 mod coverage;
+mod essential;
 mod file;
+mod refused;
 mod speed;
 mod spread;
 mod triangle;
