@@ -1,9 +1,10 @@
 //! Ordinary and weighted least squares from triangular factors.
 
-use faer::Mat;
-
+use super::entries::Stacked;
 use super::identifiable::{Dependency, identifiability};
-use super::triangle::{join, upper};
+use super::reduced::Reduced;
+use super::refine::{certain, refine};
+use super::triangle::join;
 use super::{EstimateError, Triangle, robust, weights};
 use crate::observe::Equations;
 use crate::settings::{Freedom, Weights};
@@ -35,7 +36,17 @@ pub struct Estimate {
     pub unseen: Vec<usize>,
     /// Parameters determined only in combinations.
     pub dependent: Vec<Dependency>,
+    /// Bound of the numerical error of each parameter, in its unit; zero for one that was left
+    /// out. Entries of W and Y are taken to be uncertain by their last bit. This is no statement
+    /// about noise: that is `sigma`.
+    pub numerical_error: Vec<f64>,
+    /// The parameters that were solved for, ascending.
+    pub(super) independent: Vec<usize>,
 }
+
+/// Systems with more entries than this are not refined: the factorisation of all rows at once
+/// would take more time and memory (16 MB) than all else that is done with them.
+const REFINED: usize = 2_000_000;
 
 /// Estimates `np` parameters from blocks of equations.
 ///
@@ -51,22 +62,19 @@ pub fn estimate(
     np: usize,
     weights: Weights,
 ) -> Result<Estimate, EstimateError> {
-    let triangles = blocks
-        .iter()
-        .enumerate()
-        .map(|(block, equations)| Triangle::new(equations, block, None))
-        .collect::<Result<Vec<_>, _>>()?;
+    let triangles = Triangle::of_all(blocks)?;
     let ordinary = solve(&triangles, &vec![1.0; blocks.len()], np)?;
     match weights {
-        Weights::None => Ok(ordinary),
-        Weights::Joint if blocks.len() < 2 => Ok(ordinary),
-        Weights::Joint => weighted(&triangles, &ordinary, np),
+        Weights::None => Ok(ordinary.refined(blocks, None)),
+        Weights::Joint if blocks.len() < 2 => Ok(ordinary.refined(blocks, None)),
+        Weights::Joint => Ok(weighted(&triangles, &ordinary, np)?.refined(blocks, None)),
         Weights::Robust => {
             let start = weighted(&triangles, &ordinary, np)?;
-            let condition_unweighted = ordinary.condition;
+            let (robust, row_factors) = robust::huber(blocks, start, np)?;
+            let refined = robust.refined(blocks, Some(&row_factors));
             Ok(Estimate {
-                condition_unweighted,
-                ..robust::huber(blocks, start, np)?
+                condition_unweighted: ordinary.condition,
+                ..refined
             })
         }
     }
@@ -89,6 +97,45 @@ fn weighted(
 }
 
 impl Estimate {
+    /// Decimal digits that rounding leaves certain in the worst of the determined parameters,
+    /// between 0 and 16. They are counted from the parameter or from its sigma, whichever is
+    /// larger: digits beyond both would mean nothing.
+    pub fn certified_digits(&self) -> f64 {
+        let digits = |k: usize| {
+            let sigma = self.sigma[k].unwrap_or(0.0);
+            certain(self.numerical_error[k], sigma.max(self.solution[k].abs()))
+        };
+        (0..self.solution.len())
+            .filter(|k| self.determined[*k])
+            .map(digits)
+            .fold(certain(0.0, 1.0), f64::min)
+    }
+
+    /// The same estimate with all the digits that the equations hold, where that is cheap.
+    fn refined(mut self, blocks: &[Equations], row_factors: Option<&[Vec<f64>]>) -> Estimate {
+        if self.rows.saturating_mul(self.independent.len()) > REFINED {
+            return self;
+        }
+        let factors: Vec<f64> = match self.joint_sigma.is_empty() {
+            true => vec![1.0; blocks.len()],
+            false => self.joint_sigma.iter().map(|sigma| 1.0 / sigma).collect(),
+        };
+        let entries = Stacked {
+            blocks,
+            factors: &factors,
+            row_factors,
+            columns: &self.independent,
+        };
+        // Without convergence the plain solution is the better one, and its bound holds.
+        if let Some(refined) = refine(&entries).ok().filter(|refined| refined.converged) {
+            for (k, column) in self.independent.iter().enumerate() {
+                self.solution[*column] = refined.solution[k];
+                self.numerical_error[*column] = refined.error[k];
+            }
+        }
+        self
+    }
+
     /// The same estimate with the residual's degrees of freedom counted in another way: sigmas
     /// scale with the root of r - np over r - 1.
     pub fn counted(mut self, freedom: Freedom) -> Estimate {
@@ -121,10 +168,16 @@ pub(super) fn solve(
     let spare = rows - found.rank();
     let sigma = (spare > 0).then(|| reduced.sigma(spare));
     let condition = reduced.condition()?;
+    let sensitivity = reduced.sensitivity(&values);
+    // Rounding in an orthogonal factorisation acts as if the entries were uncertain by a few
+    // units in the last place per column (Higham 2002, theorem 19.3).
+    let roundoff = 0.5 * f64::EPSILON * (1 + found.rank()) as f64;
     let mut solution = vec![0.0; np];
+    let mut numerical_error = vec![0.0; np];
     let mut deviations = vec![None; np];
     for (k, &column) in found.independent.iter().enumerate() {
         solution[column] = values[k];
+        numerical_error[column] = roundoff * sensitivity[k];
         let own = sigma.as_ref().map(|sigma| sigma[k]);
         deviations[column] = own.filter(|_| found.determines(column));
     }
@@ -137,92 +190,9 @@ pub(super) fn solve(
         condition,
         condition_unweighted: condition,
         joint_sigma: Vec::new(),
+        numerical_error,
+        independent: found.independent,
         unseen: found.unseen,
         dependent: found.dependent,
     })
-}
-
-/// The system over independent columns, scaled by powers of two so that columns in different
-/// units meet with norms near one, without any rounding.
-struct Reduced {
-    /// Upper triangular factor of `[W | Y]` over the scaled columns.
-    r: Mat<f64>,
-    /// What each column was multiplied by.
-    scale: Vec<f64>,
-}
-
-impl Reduced {
-    fn new(full: &Mat<f64>, columns: &[usize]) -> Self {
-        let last = full.ncols() - 1;
-        let scale: Vec<f64> = columns
-            .iter()
-            .map(|c| (-full.col(*c).norm_l2().log2().round()).exp2())
-            .collect();
-        let r = upper(Mat::from_fn(full.nrows(), columns.len() + 1, |i, k| {
-            columns
-                .get(k)
-                .map_or(full[(i, last)], |c| full[(i, *c)] * scale[k])
-        }));
-        Reduced { r, scale }
-    }
-
-    /// Back substitution.
-    fn solution(&self) -> Vec<f64> {
-        let np = self.scale.len();
-        let mut x = vec![0.0; np];
-        for i in (0..np).rev() {
-            let sum: f64 = (i + 1..np).map(|k| self.r[(i, k)] * x[k]).sum();
-            x[i] = (self.r[(i, np)] - sum) / self.r[(i, i)];
-        }
-        x.iter()
-            .zip(&self.scale)
-            .map(|(x, scale)| x * scale)
-            .collect()
-    }
-
-    /// Standard deviations: the row norms of the inverse factor times the residual's, which
-    /// stands in the corner of the factor.
-    fn sigma(&self, spare: usize) -> Vec<f64> {
-        let np = self.scale.len();
-        let residual = if self.r.nrows() > np {
-            self.r[(np, np)].abs()
-        } else {
-            0.0
-        };
-        let sigma_rho = residual / (spare as f64).sqrt();
-        let mut squares = vec![0.0; np];
-        for column in 0..np {
-            let inverse = self.inverse_column(column);
-            for (square, entry) in squares.iter_mut().zip(&inverse) {
-                *square += entry * entry;
-            }
-        }
-        squares
-            .iter()
-            .zip(&self.scale)
-            .map(|(s, scale)| sigma_rho * s.sqrt() * scale)
-            .collect()
-    }
-
-    /// Column of the inverse of the triangular factor of W.
-    fn inverse_column(&self, column: usize) -> Vec<f64> {
-        let mut x = vec![0.0; self.scale.len()];
-        x[column] = 1.0 / self.r[(column, column)];
-        for i in (0..column).rev() {
-            let sum: f64 = (i + 1..=column).map(|k| self.r[(i, k)] * x[k]).sum();
-            x[i] = -sum / self.r[(i, i)];
-        }
-        x
-    }
-
-    /// 2-norm condition number of the unscaled columns.
-    fn condition(&self) -> Result<f64, EstimateError> {
-        let np = self.scale.len();
-        let unscaled = Mat::from_fn(np, np, |i, k| self.r[(i, k)] / self.scale[k]);
-        let singular = unscaled
-            .singular_values()
-            .map_err(|_| EstimateError::Singular)?;
-        let bounds = singular.first().zip(singular.last());
-        Ok(bounds.map_or(1.0, |(largest, smallest)| largest / smallest))
-    }
 }

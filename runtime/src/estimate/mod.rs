@@ -3,18 +3,30 @@
 //!
 //! Each block of equations (a joint) is reduced to a small triangular factor ([`Triangle`]);
 //! ordinary and weighted least squares, residuals, condition and rank all follow from these
-//! factors without the rows (Gautier 1996, sections 5 and 7.3).
+//! factors without the rows (Gautier 1996, sections 5 and 7.3). Where it is cheap, the solution is
+//! then refined to all the digits that the equations hold ([`refine()`]), and the digits that are
+//! certain are counted.
 
+mod double;
+mod entries;
 mod identifiable;
 mod least_squares;
 #[cfg(test)]
+mod made;
+#[cfg(test)]
 mod nist;
+mod orthogonal;
+mod reduced;
+mod refine;
 mod robust;
 mod triangle;
 mod weights;
 
+pub use double::Double;
+pub use entries::Entries;
 pub use identifiable::Dependency;
 pub use least_squares::{Estimate, estimate};
+pub use refine::{Refined, refine, refined};
 pub use triangle::Triangle;
 
 /// Why parameters cannot be estimated.
@@ -53,6 +65,15 @@ pub enum EstimateError {
     /// Every column of W is zero.
     #[error("no parameter appears in the equations: the robot does not move in these logs")]
     NothingMoves,
+    /// A column that the others make up, in a system that was to be refined as it is.
+    #[error(
+        "column {column} of W, counted from 0, is a combination of the others; \
+         leave it out, or identify it from richer data"
+    )]
+    Dependent {
+        /// Column of W, counted from 0.
+        column: usize,
+    },
     /// The singular values did not converge.
     #[error("the singular values of W could not be computed; check the log for extreme values")]
     Singular,

@@ -21,25 +21,23 @@ const SETTLED: f64 = 1e-9;
 /// Goes on from `start` with a weight per row: 1 for residuals within [`TUNING`] standard
 /// deviations of their block, falling with the residual beyond. The scale of a block is the
 /// median absolute deviation of its residuals. Standard deviations are those of the final
-/// weighted system.
+/// weighted system. Returned with the factors of the rows of each block, roots of their weights.
 pub(super) fn huber(
     blocks: &[Equations],
     start: Estimate,
     np: usize,
-) -> Result<Estimate, EstimateError> {
-    let mut estimate = start;
-    for _ in 0..ROUNDS {
-        let (next, scales) = reweighted(blocks, &estimate.solution, np)?;
-        let change = distance(&next.solution, &estimate.solution);
-        estimate = Estimate {
-            joint_sigma: scales,
-            ..next
-        };
+) -> Result<(Estimate, Vec<Vec<f64>>), EstimateError> {
+    let (mut estimate, mut row_factors) = reweighted(blocks, &start.solution, np)?;
+    let mut change = distance(&estimate.solution, &start.solution);
+    for _ in 1..ROUNDS {
         if change < SETTLED {
             break;
         }
+        let next = reweighted(blocks, &estimate.solution, np)?;
+        change = distance(&next.0.solution, &estimate.solution);
+        (estimate, row_factors) = next;
     }
-    Ok(estimate)
+    Ok((estimate, row_factors))
 }
 
 /// One round: weights from the residuals of `parameters`, then least squares.
@@ -47,22 +45,26 @@ fn reweighted(
     blocks: &[Equations],
     parameters: &[f64],
     np: usize,
-) -> Result<(Estimate, Vec<f64>), EstimateError> {
+) -> Result<(Estimate, Vec<Vec<f64>>), EstimateError> {
     let residuals: Vec<Vec<f64>> = blocks.iter().map(|b| b.residual(parameters)).collect();
     let scales = scales(&residuals, blocks);
+    let of_block = |(residuals, scale): (&Vec<f64>, &f64)| {
+        let factors = residuals.iter().map(|rho| row_factor(rho / scale));
+        factors.collect::<Vec<f64>>()
+    };
+    let row_factors: Vec<Vec<f64>> = residuals.iter().zip(&scales).map(of_block).collect();
     let triangles = blocks
         .iter()
+        .zip(&row_factors)
         .enumerate()
-        .map(|(block, equations)| {
-            let factors: Vec<f64> = residuals[block]
-                .iter()
-                .map(|rho| row_factor(rho / scales[block]))
-                .collect();
-            Triangle::new(equations, block, Some(&factors))
-        })
+        .map(|(block, (equations, factors))| Triangle::new(equations, block, Some(factors)))
         .collect::<Result<Vec<_>, _>>()?;
     let factors: Vec<f64> = scales.iter().map(|scale| 1.0 / scale).collect();
-    Ok((solve(&triangles, &factors, np)?, scales))
+    let estimate = Estimate {
+        joint_sigma: scales,
+        ..solve(&triangles, &factors, np)?
+    };
+    Ok((estimate, row_factors))
 }
 
 /// Square root of Huber's weight of a residual in standard deviations.

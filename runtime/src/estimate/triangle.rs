@@ -9,6 +9,10 @@ use crate::observe::Equations;
 /// Rows that are triangularised at once: few enough to stay in cache.
 const ROWS: usize = 1024;
 
+/// A system with no more rows is left as it is: the last step, which is the most careful one,
+/// then is the only one that rounds.
+const FEW: usize = 128;
+
 /// Triangular factor of `[W | Y]` of a block of equations: with it
 /// \\( \|Y - W X\| = \|R_{[W|Y]} (X; -1)\| \\) for every X.
 #[derive(Clone, Debug)]
@@ -17,11 +21,22 @@ pub struct Triangle {
     pub columns: Vec<usize>,
     /// Equations that went into the factor.
     pub rows: usize,
-    /// Upper trapezoidal factor of `[W | Y]`, at most `columns.len() + 1` rows.
+    /// Upper trapezoidal factor of `[W | Y]`, at most `columns.len() + 1` rows; or `[W | Y]` itself
+    /// if it has few rows.
     r: Mat<f64>,
 }
 
 impl Triangle {
+    /// The triangles of all blocks.
+    ///
+    /// # Errors
+    /// [`EstimateError::NoMeasurements`], [`EstimateError::NotFinite`].
+    pub fn of_all(blocks: &[Equations]) -> Result<Vec<Self>, EstimateError> {
+        let each = blocks.iter().enumerate();
+        each.map(|(block, equations)| Triangle::new(equations, block, None))
+            .collect()
+    }
+
     /// Reduces the equations of block `block` (from 0, for messages), each row multiplied by its
     /// factor in `factors` if there are any.
     ///
@@ -44,7 +59,7 @@ impl Triangle {
             .into_par_iter()
             .map(|start| {
                 let rows = ROWS.min(equations.rows - start);
-                upper(Mat::from_fn(rows, width, |i, k| {
+                upper_of_many(Mat::from_fn(rows, width, |i, k| {
                     let row = start + i;
                     let value = if k + 1 < width {
                         equations.column(k)[row]
@@ -84,7 +99,8 @@ impl Triangle {
 }
 
 /// Stacks the factors of several blocks, each multiplied by its factor, over all `np` parameters
-/// and the measurements, and triangularises again: `[W | Y]` of the whole system.
+/// and the measurements, and triangularises again unless they are few: `[W | Y]` of the whole
+/// system.
 pub(super) fn join(triangles: &[Triangle], factors: &[f64], np: usize) -> Mat<f64> {
     let rows = triangles.iter().map(|t| t.r.nrows()).sum();
     let mut all = Mat::zeros(rows, np + 1);
@@ -98,15 +114,28 @@ pub(super) fn join(triangles: &[Triangle], factors: &[f64], np: usize) -> Mat<f6
         }
         start += triangle.r.nrows();
     }
-    upper(all)
+    upper_of_many(all)
+}
+
+/// A factor that is triangular unless the matrix has few rows.
+fn upper_of_many(matrix: Mat<f64>) -> Mat<f64> {
+    if matrix.nrows() <= FEW {
+        matrix
+    } else {
+        upper(matrix)
+    }
+}
+
+/// Whether all below the diagonal is zero.
+pub(super) fn is_upper(matrix: &Mat<f64>) -> bool {
+    (0..matrix.ncols()).all(|k| (k + 1..matrix.nrows()).all(|i| matrix[(i, k)] == 0.0))
 }
 
 /// Upper trapezoidal factor of the QR decomposition, with zeros below. A matrix that has this
 /// form already is its own factor, without another round of rounding.
 pub(super) fn upper(matrix: Mat<f64>) -> Mat<f64> {
     let columns = matrix.ncols();
-    let is_upper = (0..columns).all(|k| (k + 1..matrix.nrows()).all(|i| matrix[(i, k)] == 0.0));
-    if is_upper {
+    if is_upper(&matrix) {
         let rows = matrix.nrows().min(columns);
         return Mat::from_fn(rows, columns, |i, k| matrix[(i, k)]);
     }
