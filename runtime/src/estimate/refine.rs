@@ -134,7 +134,10 @@ fn factor(entries: &impl Entries) -> Result<Orthogonal, EstimateError> {
     });
     let factor = Orthogonal::new(columns.collect(), PLAIN);
     let norms = factor.norms();
-    match norms.iter().position(|norm| !(*norm > DEPENDENT)) {
+    match norms
+        .iter()
+        .position(|norm| norm.is_nan() || *norm <= DEPENDENT)
+    {
         Some(place) => Err(EstimateError::Dependent {
             column: factor.order()[place],
         }),
