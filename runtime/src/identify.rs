@@ -127,6 +127,7 @@ fn result(
         condition: estimate.condition,
         condition_unweighted: estimate.condition_unweighted,
         rank: estimate.rank,
+        certified_digits: estimate.certified_digits(),
         equation_pct: score::equations(train.of(kind)?, x),
         parameters: model
             .columns()

@@ -40,6 +40,9 @@ pub struct ModelResult {
     pub condition_unweighted: f64,
     /// Numerical rank of W.
     pub rank: usize,
+    /// Decimal digits that rounding leaves certain in the worst of the determined parameters;
+    /// numerics only, sigma says what noise leaves.
+    pub certified_digits: f64,
     /// Residual of the model's own equations in percent of Y: of the power for the power model.
     pub equation_pct: f64,
     /// The parameters, in the order of the robot's columns.

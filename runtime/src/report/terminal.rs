@@ -147,6 +147,7 @@ fn equations(models: &[ModelResult]) -> Table {
     line("rows", &|m| m.rows.to_string());
     line("rank", &|m| format!("{} of {}", m.rank, m.parameters.len()));
     line("condition", &|m| significant(m.condition, 4));
+    line("certain digits", &|m| format!("{:.1}", m.certified_digits));
     line("residual, %", &|m| significant(m.equation_pct, 3));
     line("below 2 sigma", &|m| {
         format!("{} of {}", insignificant(m), m.parameters.len())

@@ -42,6 +42,9 @@ fn the_terminal_report_fits_a_screen_and_lines_up() {
     assert_eq!((words[0], words[11]), ("ZZR1", "ZZR1"));
     assert!(words[2].starts_with("3.50") && words[5].starts_with("3.50"));
     assert_eq!(row("rank").matches("8 of 8").count(), 3);
+    let digits = row("certain digits").split_whitespace().skip(2);
+    let digits: Vec<f64> = digits.map(|digits| digits.parse().unwrap()).collect();
+    assert!(digits.len() == 3 && digits.iter().all(|digits| (8.0..16.0).contains(digits)));
     assert_eq!(row("  elbow, N m").split_whitespace().count(), 9);
     assert!(row("validation reference/").contains("rmse"));
     assert!(!text.contains("warning"), "{text}");
@@ -74,6 +77,7 @@ fn the_json_has_the_shape_of_the_contract() {
     let model = &json["models"][2];
     assert_eq!(model["name"], "power");
     assert!(model["rows"].is_u64() && model["rank"].is_u64() && model["condition"].is_f64());
+    assert_eq!(model["certified_digits"], found.models[2].certified_digits);
     let parameter = &model["parameters"][0];
     for key in ["value", "sigma", "sigma_pct"] {
         assert!(parameter[key].is_f64(), "{key}");
