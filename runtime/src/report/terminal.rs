@@ -95,17 +95,26 @@ fn words(id: &Identification) -> String {
     format!("{velocity}, {weights}")
 }
 
-/// One row per parameter: name, unit, value, sigma and %sigma of each model, relation.
+/// One row per parameter: name, unit, value, sigma, corrected sigma ("corr.": holds although
+/// residuals are correlated) and %sigma of each model, relation.
 fn parameters(id: &Identification) -> Table {
     let mut align = vec![Align::Left, Align::Left];
     let (mut models, mut titles) = (
         vec![String::new(); 2],
         vec!["parameter".into(), "unit".into()],
     );
+    // Three models leave no room for percentages; they are in the JSON.
+    let cells = if id.models.len() > 2 { 3 } else { 4 };
     for model in &id.models {
-        align.extend([Align::Right; 3]);
-        models.extend([model.name.name().to_owned(), String::new(), String::new()]);
-        titles.extend(["value", "sigma", "%"].map(str::to_owned));
+        align.extend(vec![Align::Right; cells]);
+        models.push(model.name.name().to_owned());
+        models.extend(vec![String::new(); cells - 1]);
+        titles.extend(
+            ["value", "sigma", "corr.", "%"]
+                .iter()
+                .take(cells)
+                .map(ToString::to_string),
+        );
     }
     align.push(Align::Left);
     titles.push("relation".to_owned());
@@ -116,7 +125,7 @@ fn parameters(id: &Identification) -> Table {
     for (k, parameter) in first.iter().enumerate() {
         let mut row = vec![parameter.name.clone(), parameter.unit.clone()];
         for model in &id.models {
-            row.extend(estimate(model.parameters.get(k)));
+            row.extend(estimate(model.parameters.get(k)).into_iter().take(cells));
         }
         row.push(parameter.relation.clone());
         table.row(row);
@@ -124,12 +133,13 @@ fn parameters(id: &Identification) -> Table {
     table
 }
 
-/// Value, sigma and %sigma of a parameter.
-fn estimate(parameter: Option<&ParameterResult>) -> [String; 3] {
+/// Value, classical and corrected sigma, classical %sigma of a parameter.
+fn estimate(parameter: Option<&ParameterResult>) -> [String; 4] {
     let get = |field: fn(&ParameterResult) -> Option<f64>| parameter.and_then(field);
     [
         optional(get(|p| p.value), 5),
-        optional(get(|p| p.sigma_corrected.or(p.sigma)), 2),
+        optional(get(|p| p.sigma), 2),
+        optional(get(|p| p.sigma_corrected), 2),
         optional(get(|p| p.sigma_pct), 2),
     ]
 }
