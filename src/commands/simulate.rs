@@ -6,7 +6,7 @@ mod show;
 use std::path::{Path, PathBuf};
 
 use idim::runtime::log::{
-    self, Companion, Feedforward, LogSpec, ReadOptions, Recording, Reference,
+    self, Companion, Controller, Feedforward, LogSpec, ReadOptions, Recording, Reference,
 };
 use idim::runtime::model::IdentificationModel;
 use idim::runtime::simulate::{
@@ -87,17 +87,21 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let derived = robot::derived(&arguments.robot)?;
     let values = parameters::read(&arguments.parameters, model.as_ref(), &derived)?;
     let described = parameters::rigid(&derived);
-    let rigid = described
-        .clone()
-        .unwrap_or_else(|| rigid_only(model.as_ref(), &values));
+    let source = if described.is_some() {
+        "the description"
+    } else {
+        "the given parameters"
+    };
+    let rigid = described.unwrap_or_else(|| rigid_only(model.as_ref(), &values));
     let setup = Setup {
         model: model.as_ref(),
         values,
         rigid,
+        source,
         arguments,
     };
     spinner.say("simulating");
-    let mut run = match (&arguments.like, &arguments.trajectory) {
+    let run = match (&arguments.like, &arguments.trajectory) {
         (Some(log), _) => setup.like(log)?,
         (None, Some(path)) => setup.trajectory(path)?,
         (None, None) => {
@@ -107,10 +111,6 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             });
         }
     };
-    if described.is_none() && !run.open {
-        run.driven
-            .push_str(", feedforward (if any) from the given parameters");
-    }
     spinner.finish();
     show::save(&run.result, arguments.output.as_deref())?;
     if arguments.quiet {
@@ -130,6 +130,8 @@ struct Setup<'a> {
     values: Vec<f64>,
     /// Of the controller's feedforward.
     rigid: Vec<f64>,
+    /// Where they come from.
+    source: &'static str,
     arguments: &'a Arguments,
 }
 
@@ -167,10 +169,12 @@ impl Setup<'_> {
             Some(reference) if !open => Some(Trajectory::of(reference, &grid)?.q),
             _ => None,
         };
-        let driven = if open {
-            format!("open loop under the torque of {name}")
-        } else {
-            format!("closed loop, reference and controller of {name}")
+        let driven = match &companion.controller {
+            Some(controller) if !open => {
+                let with = self.feedforward(controller);
+                format!("closed loop{with}, reference and controller of {name}")
+            }
+            _ => format!("open loop under the torque of {name}"),
         };
         let Recording { q, .. } = recording;
         Ok(Run {
@@ -203,11 +207,7 @@ impl Setup<'_> {
                 };
                 let options = self.options(&companion);
                 let result = simulate::closed_loop(self.model, &self.values, &plan, &options)?;
-                let with = match controller.feedforward {
-                    Feedforward::None => "",
-                    Feedforward::Gravity => " with gravity feedforward",
-                    Feedforward::Rigid => " with rigid feedforward",
-                };
+                let with = self.feedforward(controller);
                 (
                     result,
                     format!("closed loop{with}, reference of {}", path.display()),
@@ -229,6 +229,16 @@ impl Setup<'_> {
             reference: Some(reference),
             log: None,
         })
+    }
+
+    /// What the controller adds, in words.
+    fn feedforward(&self, controller: &Controller) -> String {
+        let kind = match controller.feedforward {
+            Feedforward::None => return String::new(),
+            Feedforward::Gravity => "gravity",
+            Feedforward::Rigid => "rigid",
+        };
+        format!(" with {kind} feedforward from {}", self.source)
     }
 
     fn grid(&self, companion: &Companion, reference: &Reference) -> Result<Grid, Failure> {

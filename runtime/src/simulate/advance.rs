@@ -3,7 +3,7 @@
 use super::contact::Contact;
 use super::dynamics::Dynamics;
 use super::error::SimulateError;
-use super::integrate::{DORMAND_PRINCE, Integrator, RK4, Torque};
+use super::integrate::{DORMAND_PRINCE, Integrator, RK4, Torque, bounded};
 use super::options::{Method, State};
 
 /// Events that are located between two samples; beyond that (Zeno) steps go on without.
@@ -12,7 +12,7 @@ const EVENTS: usize = 32;
 /// Trial steps to locate one event; each third one halves the interval.
 const TRIALS: usize = 60;
 
-/// Smallest step of the variable-step method, s.
+/// Smallest step, s.
 const SMALLEST: f64 = 1e-12;
 
 /// A robot in motion.
@@ -71,6 +71,10 @@ impl<'a> Simulator<'a> {
         if let Method::Fixed { step_s } = self.method {
             self.step = interval / (interval / step_s - 1e-9).ceil().max(1.0);
         }
+        if self.step < SMALLEST {
+            return Err(SimulateError::StepTooSmall { second: from });
+        }
+        bounded(&self.dynamics, &self.state, from)?;
         let mut t = from;
         let mut events = 0;
         self.settle(torque, t)?;

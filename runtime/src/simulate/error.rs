@@ -96,8 +96,8 @@ pub enum SimulateError {
         /// First time at which it was found outside, s.
         second: f64,
     },
-    /// The variable-step method cannot meet its tolerance.
-    #[error("the step fell below 1e-12 s at {second:.6} s: ask for less accuracy")]
+    /// The variable-step method cannot meet its tolerance, or a fixed step is absurd.
+    #[error("the step fell below 1e-12 s at {second:.6} s: ask for less accuracy or a longer step")]
     StepTooSmall {
         /// Time, s.
         second: f64,

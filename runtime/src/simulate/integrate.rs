@@ -156,7 +156,11 @@ impl Integrator {
 }
 
 /// Whether a state is one that a robot can be in.
-fn bounded(dynamics: &Dynamics<'_>, state: &[f64], second: f64) -> Result<(), SimulateError> {
+pub(super) fn bounded(
+    dynamics: &Dynamics<'_>,
+    state: &[f64],
+    second: f64,
+) -> Result<(), SimulateError> {
     // NaN is not within the bound either.
     let outside = |x: &f64| x.is_nan() || x.abs() > BOUND;
     let Some(place) = state.iter().position(outside) else {

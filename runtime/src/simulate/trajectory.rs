@@ -41,12 +41,26 @@ impl Trajectory {
             qd: series(),
             qdd: series(),
         };
-        let rows = fourier.sin.iter().zip(&fourier.cos);
-        for (joint, (center, (sin, cos))) in fourier.center.iter().zip(rows).enumerate() {
+        // Whatever a row has not is zero.
+        let at = |rows: &[Vec<f64>], joint: usize, h: usize| {
+            rows.get(joint)
+                .and_then(|row| row.get(h))
+                .copied()
+                .unwrap_or(0.0)
+        };
+        let longest = fourier
+            .sin
+            .iter()
+            .chain(&fourier.cos)
+            .map(Vec::len)
+            .max()
+            .unwrap_or(0);
+        for (joint, center) in fourier.center.iter().enumerate() {
             for sample in 0..grid.len {
                 let phase = TAU * fourier.f0_hz * grid.time(sample);
                 let [mut q, mut qd, mut qdd] = [*center, 0.0, 0.0];
-                for (h, (sin, cos)) in sin.iter().zip(cos).enumerate() {
+                for h in 0..longest {
+                    let (sin, cos) = (at(&fourier.sin, joint, h), at(&fourier.cos, joint, h));
                     let harmonic = (h + 1) as f64;
                     let w = harmonic * TAU * fourier.f0_hz;
                     let (s, c) = (harmonic * phase).sin_cos();
