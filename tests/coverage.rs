@@ -1,7 +1,11 @@
 //! Error bars against the truth: on simulated logs with coloured noise the 95 % intervals of the
 //! corrected sigma hold the truth as often as they say; those of the classical one do not.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    reason = "a test fails by panicking"
+)]
 
 use idim::demo;
 use idim::robots;
@@ -18,7 +22,9 @@ const MEMORY: f64 = 0.98;
 
 /// Sum of uniform numbers: close enough to normal, and bounded.
 fn normal(generator: &mut Pcg64Mcg) -> f64 {
-    let sum: f64 = (0..12).map(|_| f64::from(generator.next_u32()) / f64::from(u32::MAX)).sum();
+    let sum: f64 = (0..12)
+        .map(|_| f64::from(generator.next_u32()) / f64::from(u32::MAX))
+        .sum();
     sum - 6.0
 }
 
@@ -26,7 +32,10 @@ fn normal(generator: &mut Pcg64Mcg) -> f64 {
 fn corrected_intervals_hold_the_truth_as_often_as_they_say() {
     let experiment = demo::experiment().unwrap();
     let model = &robots::scara::Model;
-    let options = Options { models: vec![ModelKind::Explicit], ..Options::default() };
+    let options = Options {
+        models: vec![ModelKind::Explicit],
+        ..Options::default()
+    };
     let run = |log| identify(model, &[log], &[], &options, &()).unwrap().models[0].clone();
     // What the filters do without noise is a bias of the model, not an error of the log.
     let centre = run(experiment.recording.clone());
@@ -43,7 +52,8 @@ fn corrected_intervals_hold_the_truth_as_often_as_they_say() {
             }
         }
         let found = run(log);
-        for (k, (parameter, centre)) in found.parameters.iter().zip(&centre.parameters).enumerate() {
+        for (k, (parameter, centre)) in found.parameters.iter().zip(&centre.parameters).enumerate()
+        {
             let error = (parameter.value.unwrap() - centre.value.unwrap()).abs();
             classical[k] += usize::from(error < 1.96 * parameter.sigma.unwrap());
             corrected[k] += usize::from(error < 1.96 * parameter.sigma_corrected.unwrap());
@@ -52,9 +62,19 @@ fn corrected_intervals_hold_the_truth_as_often_as_they_say() {
     let percent = |count: usize| 100.0 * count as f64 / LOGS as f64;
     for (k, parameter) in centre.parameters.iter().enumerate() {
         let (old, new) = (percent(classical[k]), percent(corrected[k]));
-        println!("{:<6} classical {old:5.1} %  corrected {new:5.1} %", parameter.name);
-        assert!((92.0..=98.0).contains(&new), "{}: {new} % inside", parameter.name);
+        println!(
+            "{:<6} classical {old:5.1} %  corrected {new:5.1} %",
+            parameter.name
+        );
+        assert!(
+            (92.0..=98.0).contains(&new),
+            "{}: {new} % inside",
+            parameter.name
+        );
     }
     let worst = classical.iter().copied().min().unwrap();
-    assert!(percent(worst) < 80.0, "the noise is not coloured enough to tell");
+    assert!(
+        percent(worst) < 80.0,
+        "the noise is not coloured enough to tell"
+    );
 }

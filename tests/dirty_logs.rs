@@ -83,7 +83,7 @@ fn values_that_are_no_numbers_in_one_percent_of_the_rows_change_nothing() {
     let mut dirty = clean.clone();
     let mut generator = Pcg64Mcg::new(9);
     for row in &mut dirty {
-        if generator.next_u32() % 100 == 0 {
+        if generator.next_u32().is_multiple_of(100) {
             row[1 + generator.next_u32() as usize % 4] = f64::NAN;
         }
     }
@@ -100,7 +100,7 @@ fn rows_that_are_missing_are_bridged_and_reported() {
     let clean = rows();
     let mut generator = Pcg64Mcg::new(11);
     let mut dirty = clean.clone();
-    dirty.retain(|_| generator.next_u32() % 20 != 0);
+    dirty.retain(|_| !generator.next_u32().is_multiple_of(20));
     let log = read(&dirty);
     assert_names(&log, &["The stamps are irregular"]);
     assert_within_three_sigma(&explicit(log), &explicit(read(&clean)));

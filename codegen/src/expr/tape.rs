@@ -103,11 +103,11 @@ impl Tape {
         let value = match step.op {
             Op::Constant(value) => [value; WIDTH],
             Op::Input(input) => read(batch, input, start, width),
-            Op::Sin(angle) => lanes(self.angle(batch, angle, start, width), f64x4::sin),
-            Op::Cos(angle) => lanes(self.angle(batch, angle, start, width), f64x4::cos),
-            Op::Add(a, b) => zip(&registers[a], &registers[b], |x, y| x + y),
-            Op::Sub(a, b) => zip(&registers[a], &registers[b], |x, y| x - y),
-            Op::Mul(a, b) => zip(&registers[a], &registers[b], |x, y| x * y),
+            Op::Sin(angle) => lanes(self.angle(batch, angle, start, width), width, f64x4::sin),
+            Op::Cos(angle) => lanes(self.angle(batch, angle, start, width), width, f64x4::cos),
+            Op::Add(a, b) => zip(&registers[a], &registers[b], width, |x, y| x + y),
+            Op::Sub(a, b) => zip(&registers[a], &registers[b], width, |x, y| x - y),
+            Op::Mul(a, b) => zip(&registers[a], &registers[b], width, |x, y| x * y),
             Op::Call(function, a) => registers[a].map(|x| call(function, x)),
             Op::Store(a, output, sign) => {
                 let place = &mut out[output * batch.len + start..][..width];
@@ -149,18 +149,20 @@ fn read(batch: &Batch<'_>, input: Input, start: usize, width: usize) -> Register
     register
 }
 
-fn zip(a: &Register, b: &Register, f: impl Fn(f64, f64) -> f64) -> Register {
+/// The first `width` values of two registers, pair by pair: a single state costs one operation,
+/// not a register full of them.
+fn zip(a: &Register, b: &Register, width: usize, f: impl Fn(f64, f64) -> f64) -> Register {
     let mut out = [0.0; WIDTH];
-    for ((out, a), b) in out.iter_mut().zip(a).zip(b) {
+    for ((out, a), b) in out.iter_mut().zip(a).zip(b).take(width) {
         *out = f(*a, *b);
     }
     out
 }
 
 /// A function of four lanes at a time.
-fn lanes(register: Register, f: impl Fn(f64x4) -> f64x4) -> Register {
+fn lanes(register: Register, width: usize, f: impl Fn(f64x4) -> f64x4) -> Register {
     let mut out = register;
-    for four in out.chunks_exact_mut(4) {
+    for four in out.chunks_exact_mut(4).take(width.div_ceil(4)) {
         if let Ok(values) = <[f64; 4]>::try_from(&*four) {
             four.copy_from_slice(&f(f64x4::from(values)).to_array());
         }

@@ -25,14 +25,18 @@ pub(super) fn corrected(
         Weights::Joint => Weighting::Residual,
         Weights::Robust => return silent(),
     };
-    let covariance =
-        Evidence::from_observations(model, observations, &[], Cut::default()).and_then(|evidence| {
+    let covariance = Evidence::from_observations(model, observations, &[], Cut::default())
+        .and_then(|evidence| {
             let fit = evidence.fit(&Question::parameters(&evidence, weighting))?;
             evidence.corrected(&fit)
         });
     match covariance {
         Ok(covariance) => (0..model.columns().len())
-            .map(|column| covariance.half_width(column, 0.95).map(|half| half / NORMAL))
+            .map(|column| {
+                covariance
+                    .half_width(column, 0.95)
+                    .map(|half| half / NORMAL)
+            })
             .collect(),
         Err(_) => silent(),
     }

@@ -9,8 +9,8 @@
 mod checks;
 pub mod closed_loop;
 mod columns;
-mod doubt;
 pub mod companion;
+mod doubt;
 mod drives;
 pub mod error;
 mod grid;
