@@ -125,11 +125,9 @@ impl Tape {
         let mut sum = [0.0; WIDTH];
         for (place, &(joint, sign)) in terms.iter().enumerate() {
             let q = read(batch, Input::Q(joint), start, width);
-            sum = zip(
-                &sum,
-                &q,
-                |s, q| if place == 0 { sign * q } else { s + sign * q },
-            );
+            sum = zip(&sum, &q, width, |s, q| {
+                if place == 0 { sign * q } else { s + sign * q }
+            });
         }
         match *offset {
             0.0 => sum,
