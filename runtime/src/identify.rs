@@ -10,13 +10,15 @@ mod observed;
 mod options;
 mod predict;
 mod score;
+mod series;
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 mod warnings;
 
 pub use error::IdentifyError;
 pub use options::{Options, Plan};
 pub use predict::predict;
+pub use series::series;
 
 use crate::estimate::{Estimate, estimate};
 use crate::log::Recording;
@@ -81,6 +83,9 @@ pub fn identify(
         weights: plan.weights,
         warnings: warnings::once_each(warnings),
         models,
+        command: None,
+        truth: None,
+        series: Vec::new(),
     })
 }
 

@@ -30,7 +30,7 @@ pub(super) fn torque(
 }
 
 /// Unit of the torque of a joint.
-fn unit(kind: JointKind) -> &'static str {
+pub(super) fn unit(kind: JointKind) -> &'static str {
     match kind {
         JointKind::Revolute => "N m",
         JointKind::Prismatic => "N",

@@ -42,16 +42,7 @@ pub fn observe(
     let fail = ObserveError::filter(&motion.log, "parallel filter");
     let decimator = filtering.decimator(motion.rate_hz).map_err(&fail)?;
     let kept = decimator.kept(motion.len);
-    let within = rows_kept(&motion.log, kept.len(), filtering.cut_after())?;
-    let doubtful = doubtful(motion, filtering);
-    let keep: Vec<usize> = within
-        .filter(|&row| doubtful.iter().all(|range| !range.contains(&kept[row])))
-        .collect();
-    if keep.is_empty() {
-        return Err(ObserveError::NothingBelieved {
-            log: motion.log.clone(),
-        });
-    }
+    let keep = rows_believed(motion, filtering, &kept)?;
     let mut blocks = empty_blocks(model, kind, keep.len());
     for &term in kind.terms() {
         let signals = decimated(model, term, motion, &decimator).map_err(&fail)?;
@@ -138,7 +129,26 @@ impl Equations {
     }
 }
 
-fn pick(signal: &[f64], keep: &[usize]) -> Vec<f64> {
+/// The decimated rows, of those at the samples `kept`, that become equations: far from the edges
+/// and from samples that cannot be believed.
+pub(super) fn rows_believed(
+    motion: &Motion,
+    filtering: &Filtering,
+    kept: &[usize],
+) -> Result<Vec<usize>, ObserveError> {
+    let within = rows_kept(&motion.log, kept.len(), filtering.cut_after())?;
+    let doubtful = doubtful(motion, filtering);
+    let believed = |row: &usize| doubtful.iter().all(|range| !range.contains(&kept[*row]));
+    let rows: Vec<usize> = within.filter(believed).collect();
+    match rows.is_empty() {
+        true => Err(ObserveError::NothingBelieved {
+            log: motion.log.clone(),
+        }),
+        false => Ok(rows),
+    }
+}
+
+pub(super) fn pick(signal: &[f64], keep: &[usize]) -> Vec<f64> {
     keep.iter().map(|&row| signal[row]).collect()
 }
 
@@ -154,11 +164,7 @@ fn doubtful(motion: &Motion, filtering: &Filtering) -> Vec<Range<usize>> {
 }
 
 /// The decimated rows that remain after cutting `cut` at either end.
-pub(super) fn rows_kept(
-    log: &str,
-    rows: usize,
-    cut: usize,
-) -> Result<std::ops::Range<usize>, ObserveError> {
+fn rows_kept(log: &str, rows: usize, cut: usize) -> Result<std::ops::Range<usize>, ObserveError> {
     match cut.saturating_mul(2) {
         both if both < rows => Ok(cut..rows - cut),
         both => Err(ObserveError::NothingLeft {

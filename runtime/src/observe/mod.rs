@@ -10,6 +10,7 @@ mod error;
 mod filtering;
 mod motion;
 mod regressor;
+mod torque;
 
 pub use equations::{Equations, Observations, observe};
 pub use error::ObserveError;
@@ -18,6 +19,7 @@ pub(crate) use motion::rests;
 pub use motion::{Motion, check, check_torque};
 pub(crate) use regressor::contract;
 pub use regressor::decimated;
+pub use torque::{Torque, filtered_torque};
 
 use serde::Serialize;
 

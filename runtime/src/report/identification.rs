@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use super::LogSeries;
 use crate::model::ColumnKind;
 use crate::observe::{Filtering, ModelKind};
 use crate::settings::Weights;
@@ -25,6 +26,27 @@ pub struct Identification {
     pub warnings: Vec<String>,
     /// The models, in the order of the paper.
     pub models: Vec<ModelResult>,
+    /// The command line that gives this result, if one did.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub command: Option<String>,
+    /// The true parameters, where a simulation made the logs.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub truth: Option<Truth>,
+    /// What is drawn of each log. Empty, and absent from the JSON, unless asked for with
+    /// [`crate::identify::series`]: it is larger than all the rest.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub series: Vec<LogSeries>,
+}
+
+/// Parameters that made a simulated log.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Truth {
+    /// Title of a report.
+    pub title: String,
+    /// What was simulated, in a sentence for the top of a report.
+    pub about: String,
+    /// The values, in the order of the robot's columns.
+    pub values: Vec<f64>,
 }
 
 /// Result of one model.

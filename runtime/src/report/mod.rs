@@ -1,11 +1,19 @@
 //! Results as one serialisable value, and its renderings.
 //!
 //! [`Identification`] is all that is said about an identification: its JSON is the machine
-//! readable report, and [`terminal`] renders nothing but this value.
+//! readable report, and [`terminal()`] and [`html()`] render nothing but this value.
 
+mod html;
 mod identification;
+mod series;
 mod table;
 mod terminal;
+mod thin;
 
-pub use identification::{Fit, Identification, JointFit, ModelResult, ParameterResult, Validation};
+pub use html::html;
+pub use identification::{
+    Fit, Identification, JointFit, ModelResult, ParameterResult, Truth, Validation,
+};
+pub use series::{JointSeries, LogSeries, ModelSeries, Role, Spectrum};
 pub use terminal::terminal;
+pub(crate) use thin::thinned;

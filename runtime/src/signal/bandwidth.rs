@@ -69,7 +69,7 @@ fn noise_begins(power: &[f64]) -> Option<usize> {
 }
 
 /// Discrete Fourier transform in place; the length is a power of two (Cooley and Tukey 1965).
-fn fourier(re: &mut [f64], im: &mut [f64]) {
+pub(super) fn fourier(re: &mut [f64], im: &mut [f64]) {
     let size = re.len();
     let bits = size.trailing_zeros();
     for i in 1..size {

@@ -13,6 +13,7 @@ mod difference;
 mod planar;
 #[cfg(test)]
 mod reference;
+mod whiteness;
 mod zero_phase;
 
 pub use bandwidth::bandwidth;
@@ -21,6 +22,7 @@ pub use decimate::Decimator;
 pub use design::{butterworth, chebyshev1};
 pub use difference::central_difference;
 pub use planar::{BLOCK, LANES, Planar, Signals};
+pub(crate) use whiteness::{autocorrelation, density};
 pub use zero_phase::ZeroPhase;
 
 /// Why a filter cannot be designed or applied.

@@ -2,13 +2,13 @@
 
 mod emps;
 mod failures;
-mod hand_written;
+pub(crate) mod hand_written;
 mod options;
 mod properties;
 mod reading;
 mod report;
 mod robustness;
 mod scara;
-mod synthetic;
+pub(crate) mod synthetic;
 mod weights;
 mod windows;
