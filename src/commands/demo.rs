@@ -7,10 +7,15 @@ use idim::demo::{self, Experiment};
 use idim::robots;
 use idim::runtime::identify::{Options, identify};
 use idim::runtime::log;
-use idim::runtime::report::Identification;
+use idim::runtime::report::{Identification, Truth, html};
 
 use super::progress::Spinner;
-use super::{Failure, output};
+use super::{Failure, identify::draw, output};
+
+/// What the report says at its top.
+const ABOUT: &str = "The planar SCARA of M. Gautier, \"A comparison of filtered models for dynamic \
+    identification of robots\" (1996), section 7.2: simulated without noise, so the true values \
+    are known, and every error is one of the filters and the differentiation.";
 
 /// Arguments of `idim demo`.
 #[derive(Debug, clap::Args)]
@@ -31,13 +36,20 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let spinner = Spinner::new(arguments.quiet);
     let experiment = demo::experiment()?;
     let train = std::slice::from_ref(&experiment.recording);
-    let result = identify(
+    let mut result = identify(
         &robots::scara::Model,
         train,
         &[],
         &Options::default(),
         &spinner,
     )?;
+    result.command = Some(output::command_line());
+    result.truth = Some(Truth {
+        title: "The paper's SCARA: identified parameters against the true ones".to_owned(),
+        about: ABOUT.to_owned(),
+        values: experiment.truth.clone(),
+    });
+    draw(&robots::scara::Model, train, &[], &mut result)?;
     save(&arguments.folder, &experiment, &result)?;
     spinner.finish();
     if arguments.quiet {
@@ -61,7 +73,13 @@ fn save(folder: &Path, experiment: &Experiment, result: &Identification) -> Resu
             .zip(tau.iter().map(Vec::as_slice)),
     );
     log::write(&folder.join("scara.csv"), &columns)?;
-    output::json(&folder.join("result.json"), result)
+    output::text(&folder.join("report.html"), &html(result))?;
+    // The curves are in the page; the file for other programs stays short.
+    let short = Identification {
+        series: Vec::new(),
+        ..result.clone()
+    };
+    output::json(&folder.join("result.json"), &short)
 }
 
 /// Table 1 of the paper: estimates and relative errors of the three models.
@@ -103,7 +121,7 @@ fn text(folder: &Path, experiment: &Experiment, result: &Identification) -> Stri
         out,
         "\nPaper: 800, 800 and 400 equations, Cond(W) 28, 28 and 93, errors up to 0.2, 0.6 and \
          1.1 %.\n\n\
-         Written: {0}/scara.csv (the log) and {0}/result.json. Next:\n\
+         Written: {0}/scara.csv (the log), {0}/report.html (open it) and {0}/result.json. Next:\n\
          \x20 idim identify scara {0}/scara.csv        the same from the file\n\
          \x20 idim describe scara                      the robot and its parameters\n\
          \x20 idim generate scara                      its specialised Rust code",

@@ -4,11 +4,11 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
-use idim::runtime::identify::{Options, identify, predict};
+use idim::runtime::identify::{Options, identify, predict, series};
 use idim::runtime::log::{self, LogSpec, ReadOptions, Recording};
 use idim::runtime::model::IdentificationModel;
 use idim::runtime::observe::ModelKind;
-use idim::runtime::report::{Identification, terminal};
+use idim::runtime::report::{Identification, Role, html, terminal};
 use idim::runtime::settings::{Edges, Velocity, Weights};
 
 use super::progress::Spinner;
@@ -36,6 +36,9 @@ pub struct Arguments {
     /// Write the result as JSON; `-` for standard output.
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
+    /// Write the result as one self-contained page; the JSON then holds the curves it draws, too.
+    #[arg(long, value_name = "FILE")]
+    html: Option<PathBuf>,
     /// Print nothing but what was asked for as a file.
     #[arg(long)]
     quiet: bool,
@@ -168,18 +171,46 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         &spinner,
     )?;
     let options = arguments.choices.options();
-    let result = identify(model.as_ref(), &train, &validate, &options, &spinner)?;
+    let mut result = identify(model.as_ref(), &train, &validate, &options, &spinner)?;
+    result.command = Some(output::command_line());
     if let Some(folder) = &arguments.predictions {
         predictions(model.as_ref(), &validate, &result, folder)?;
     }
+    if arguments.html.is_some() {
+        spinner.say("drawing");
+        draw(model.as_ref(), &train, &validate, &mut result)?;
+    }
     spinner.finish();
+    if let Some(path) = &arguments.html {
+        output::text(path, &html(&result))?;
+    }
     if let Some(path) = &arguments.json {
         output::json(path, &result)?;
     }
-    if arguments.quiet || output::claims_stdout(arguments.json.as_deref()) {
+    let files = [arguments.json.as_deref(), arguments.html.as_deref()];
+    if arguments.quiet || files.into_iter().any(output::claims_stdout) {
         return Ok(());
     }
     output::print(&terminal(&result))
+}
+
+/// Adds to a result what its page draws of each log.
+///
+/// # Errors
+/// [`Failure::Identify`].
+pub fn draw(
+    model: &dyn IdentificationModel,
+    train: &[Recording],
+    validate: &[Recording],
+    result: &mut Identification,
+) -> Result<(), Failure> {
+    let training = train.iter().map(|log| (log, Role::Training));
+    let held_out = validate.iter().map(|log| (log, Role::Validation));
+    for (log, role) in training.chain(held_out) {
+        let drawn = series(model, log, role, result)?;
+        result.series.push(drawn);
+    }
+    Ok(())
 }
 
 fn read(

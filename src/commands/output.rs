@@ -62,14 +62,42 @@ pub fn json(path: &Path, value: &impl Serialize) -> Result<(), Failure> {
     let mut text = serde_json::to_string_pretty(value)
         .map_err(|error| Failure::Defect(format!("a result is not JSON: {error}")))?;
     text.push('\n');
+    self::text(path, &text)
+}
+
+/// A text to a file, or to standard output for `-`.
+///
+/// # Errors
+/// [`Failure::Write`].
+pub fn text(path: &Path, text: &str) -> Result<(), Failure> {
     if path == Path::new("-") {
-        print(&text)
+        print(text)
     } else {
-        write_whole(path, &text)
+        write_whole(path, text)
     }
 }
 
-/// Whether `--json -` claims standard output for itself.
-pub fn claims_stdout(json: Option<&Path>) -> bool {
-    json == Some(Path::new("-"))
+/// The command line of this program as one would type it.
+pub fn command_line() -> String {
+    let arguments = std::env::args_os().skip(1);
+    let words = arguments.map(|word| quoted(&word.to_string_lossy()));
+    std::iter::once("idim".to_owned())
+        .chain(words)
+        .collect::<Vec<_>>()
+        .join(" ")
+}
+
+/// A word for a shell, in quotes if it has to be.
+fn quoted(word: &str) -> String {
+    let plain = |c: char| c.is_alphanumeric() || "-_./,=:@#%+".contains(c);
+    // A word that begins with # would be a comment.
+    match !word.is_empty() && !word.starts_with('#') && word.chars().all(plain) {
+        true => word.to_owned(),
+        false => format!("'{}'", word.replace('\'', "'\\''")),
+    }
+}
+
+/// Whether a file asked for is `-`, which claims standard output for itself.
+pub fn claims_stdout(file: Option<&Path>) -> bool {
+    file == Some(Path::new("-"))
 }
