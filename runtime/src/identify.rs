@@ -5,6 +5,7 @@
 //! what is observed, collects what is to be said about it, and scores the result.
 
 mod choice;
+mod corrected;
 mod error;
 mod observed;
 mod options;
@@ -71,7 +72,12 @@ pub fn identify(
             &estimate,
             &together.resting,
         ));
-        models.push(result(model, kind, &estimate, &together, &checked)?);
+        let mut found = result(model, kind, &estimate, &together, &checked)?;
+        let sigmas = corrected::corrected(model, together.of(kind)?, plan.weights);
+        for (parameter, sigma) in found.parameters.iter_mut().zip(sigmas) {
+            parameter.sigma_corrected = sigma.filter(|_| parameter.value.is_some());
+        }
+        models.push(found);
     }
     warnings.extend(warnings::of_results(&models));
     Ok(Identification {
