@@ -29,7 +29,7 @@
   const lines = (area, x, width, height) => {
     const [low, high] = numbers(area, "data-x").map(Number);
     const unit = area.getAttribute("data-unit");
-    const all = [...area.querySelectorAll(".curve")].filter(shown).reverse();
+    const all = [...area.querySelectorAll(".curve")].filter(shown);
     const values = all.map((path) => {
       const point = nearest(pointsOf(path), x);
       return path.getAttribute("data-name") + ": " +

@@ -146,7 +146,7 @@ impl Panel {
     fn grid(&self, x_title: Option<&str>) -> Vec<Element> {
         let Frame { width, height, .. } = self.frame;
         let mut grid = Vec::new();
-        for tick in self.y.ticks(((height / 20.0) as usize).max(3)) {
+        for tick in self.y.ticks(((height / 20.0) as usize).max(4)) {
             let y = px(self.y.at(tick.value));
             let class = if tick.value == 0.0 {
                 "grid zero"

@@ -76,7 +76,7 @@ fn torque(joint: &JointSeries, points: usize) -> Element {
         });
     };
     draw("measured", &measured, "measured".to_owned());
-    for model in joint.models.iter().rev() {
+    for model in &joint.models {
         let predicted = double(&model.predicted);
         draw(
             model.model.name(),
@@ -103,7 +103,7 @@ fn residual(joint: &JointSeries, training_rmse: Option<f64>, points: usize) -> E
     if training_rmse.is_some() {
         panel.band(-band, band);
     }
-    for model in joint.models.iter().rev() {
+    for model in &joint.models {
         panel.curve(&Curve {
             class: &format!("{} residual", model.model.name()),
             name: residual_name(model),

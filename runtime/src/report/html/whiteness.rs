@@ -73,7 +73,7 @@ fn density(log: &LogSeries, joint: &JointSeries) -> Option<Element> {
         });
     };
     draw("measured", &joint.spectrum, "measured".to_owned());
-    for model in joint.models.iter().rev() {
+    for model in &joint.models {
         let name = format!("{} residual", model.model.name());
         draw(model.model.name(), &model.spectrum, name);
     }
@@ -122,7 +122,7 @@ fn memory(log: &LogSeries, joint: &JointSeries) -> Element {
     let longest = lags.unwrap_or(0).max(1) as f64 / log.rate_hz;
     let mut panel = Panel::new(MEMORY, (0.0, longest), (-1.0, 1.0));
     panel.band(-band, band);
-    for model in joint.models.iter().rev() {
+    for model in &joint.models {
         let y: Vec<f64> = model
             .autocorrelation
             .iter()
