@@ -37,7 +37,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         return Ok(());
     }
     for warning in &robot.description.warnings {
-        eprintln!("{:?}", failure::report(warning));
+        output::complain(&format!("{:?}", failure::report(warning)));
     }
     output::print(&text(&robot))
 }

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+use super::output;
 use idim::codegen::BuildError;
 use idim::codegen::describe::{Diagnostic, Severity};
 use miette::{LabeledSpan, MietteDiagnostic, NamedSource, Report};
@@ -68,13 +69,13 @@ impl Failure {
         match self {
             Failure::Description(BuildError::Description(diagnostics)) => {
                 for diagnostic in diagnostics {
-                    eprintln!("{:?}", report(diagnostic));
+                    output::complain(&format!("{:?}", report(diagnostic)));
                 }
             }
             other => {
                 let mut shown = MietteDiagnostic::new(other.to_string());
                 shown.help = other.help();
-                eprintln!("{:?}", Report::new(shown));
+                output::complain(&format!("{:?}", Report::new(shown)));
             }
         }
         match self {

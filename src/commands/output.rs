@@ -22,6 +22,11 @@ pub fn print(text: &str) -> Result<(), Failure> {
     }
 }
 
+/// Prints a message on standard error; if that is closed there is nobody to tell.
+pub fn complain(message: &str) {
+    let _ = writeln!(std::io::stderr(), "{message}");
+}
+
 /// Writes a file by way of a temporary one beside it, so that it is there whole or not at all.
 ///
 /// # Errors
