@@ -17,7 +17,8 @@ const MOVE_S: f64 = 1.0;
 const MOVE_SAMPLES: usize = 100;
 /// Moves: with the rows that the edges cost, 800 equations are left, as in the paper.
 const MOVES: usize = 42;
-/// Via points, of the seeds tried the first whose Cond(W) is that of the paper (28 and 93).
+/// Seed of the via points: one of several whose Cond(W) comes near the paper's 28 and 93 (here 28.8
+/// and 93.6); most seeds give other conditions, and other errors with them.
 const SEED: u128 = 2590;
 
 /// The SCARA's log and the parameters that made it.
