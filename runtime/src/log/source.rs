@@ -1,4 +1,4 @@
-//! From a path to CSV records: gzip, text encoding and separator are recognised from the content.
+//! From a path to lines of text: gzip, text encoding and separator are recognised from the content.
 
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
@@ -7,6 +7,7 @@ use std::path::Path;
 use flate2::bufread::MultiGzDecoder;
 
 use super::error::{Found, Problem};
+use super::parse::{Fields, unquoted};
 
 /// A first line longer than this is no header, bytes.
 const LONGEST_HEADER: u64 = 1 << 20;
@@ -22,8 +23,8 @@ pub(super) struct Source {
     pub separator: u8,
     /// Lines that the header took; the reader counts from the line after.
     pub header_lines: u64,
-    /// The data rows.
-    pub rows: csv::Reader<Box<dyn BufRead>>,
+    /// The lines behind the header.
+    pub text: Box<dyn BufRead + Send>,
 }
 
 /// Opens a log and reads its header.
@@ -45,12 +46,12 @@ pub(super) fn open(path: &Path) -> Found<Source> {
 }
 
 /// The same on any bytes.
-pub(super) fn read(mut bytes: Box<dyn BufRead>) -> Found<Source> {
+pub(super) fn read(mut bytes: Box<dyn BufRead + Send>) -> Found<Source> {
     let gzip = bytes
         .fill_buf()
         .map_err(Problem::Open)?
         .starts_with(&[0x1f, 0x8b]);
-    let mut text: Box<dyn BufRead> = if gzip {
+    let mut text: Box<dyn BufRead + Send> = if gzip {
         Box::new(BufReader::with_capacity(BUFFER, MultiGzDecoder::new(bytes)))
     } else {
         bytes
@@ -58,17 +59,11 @@ pub(super) fn read(mut bytes: Box<dyn BufRead>) -> Found<Source> {
     let (line, header_lines) = first_line(&mut text)?;
     let separator = separator(&line);
     let header = names(&line, separator)?;
-    let rows = csv::ReaderBuilder::new()
-        .has_headers(false)
-        .flexible(true)
-        .delimiter(separator)
-        .buffer_capacity(BUFFER)
-        .from_reader(text);
     Ok(Source {
         header,
         separator,
         header_lines,
-        rows,
+        text,
     })
 }
 
@@ -125,15 +120,13 @@ fn separator(header: &str) -> u8 {
 }
 
 fn names(line: &str, separator: u8) -> Found<Vec<String>> {
-    let mut record = csv::StringRecord::new();
-    let mut reader = csv::ReaderBuilder::new()
-        .has_headers(false)
-        .delimiter(separator)
-        .from_reader(line.as_bytes());
-    reader
-        .read_record(&mut record)
-        .map_err(|_| Problem::NotText("its header cannot be split"))?;
-    let names: Vec<String> = record.iter().map(|name| name.trim().to_owned()).collect();
+    let names: Vec<String> = Fields::of(line.as_bytes(), separator)
+        .map(|field| {
+            let (name, quoted) = unquoted(line.as_bytes().get(field).unwrap_or_default());
+            let name = String::from_utf8_lossy(name);
+            if quoted { name.replace("\"\"", "\"") } else { name.into_owned() }
+        })
+        .collect();
     if names
         .iter()
         .all(|name| name.is_empty() || name.parse::<f64>().is_ok())

@@ -1,17 +1,31 @@
-//! The rows of (a part of) a log, column by column: only the columns in use are parsed.
+//! The rows of (a part of) a log, put together in the order of the file.
+//!
+//! Text is read, parsed and put together at the same time: while one batch of stretches is parsed
+//! in parallel, the batch before it is put together and the next one is read.
 
-use std::io::BufRead;
+use std::io;
+use std::ops::Range;
 
-use csv::ByteRecord;
+use rayon::iter::{IntoParallelRefMutIterator, ParallelIterator};
 
 use super::columns::Layout;
 use super::error::{Found, Problem};
-use super::lookup::Channel;
+use super::lines::Lines;
+use super::parse::{Oddity, Parsed, Parser, unquoted};
 use super::source::Source;
 use super::spec::{FIRST_ROW, Part};
 
 /// Fewer rows than this hold no motion that could be filtered.
 const FEWEST_ROWS: usize = 10;
+
+/// More stretches than this in flight would only cost memory.
+const MOST_STRETCHES: usize = 48;
+
+/// Where rows go to.
+pub(super) trait Sink: Send {
+    /// Takes rows that follow those before, all channels of the layout.
+    fn append(&mut self, rows: &Parsed, range: Range<usize>) -> Found<()>;
+}
 
 /// The rows of a part; they are consecutive in the file.
 #[derive(Debug, Default)]
@@ -31,7 +45,128 @@ impl Table {
     /// Where sample `k` of the part stands: data row and stamp, for messages.
     pub fn at(&self, k: usize) -> String {
         let time = self.stamps().get(k).copied().unwrap_or(f64::NAN);
-        format!("row {}, t = {time} s", self.first_row + k)
+        at(self.first_row + k, time)
+    }
+}
+
+/// A data row and its stamp, for messages.
+pub(super) fn at(row: usize, time: f64) -> String {
+    format!("row {row}, t = {time} s")
+}
+
+impl Sink for Table {
+    fn append(&mut self, rows: &Parsed, range: Range<usize>) -> Found<()> {
+        for (channel, column) in self.columns.iter_mut().enumerate() {
+            column.extend_from_slice(rows.column(channel).get(range.clone()).unwrap_or_default());
+        }
+        Ok(())
+    }
+}
+
+/// Reads the rows of the part into memory.
+pub(super) fn read(
+    source: Source,
+    layout: &Layout,
+    part: Part,
+    warnings: &mut Vec<String>,
+) -> Found<Table> {
+    let mut table = Table {
+        first_row: FIRST_ROW,
+        columns: vec![Vec::new(); layout.channels.len()],
+    };
+    table.first_row = read_into(source, layout, part, &mut table, warnings)?;
+    Ok(table)
+}
+
+/// Reads the rows of the part; the data row of the first one. What is wrong with other rows does
+/// not count: so a damaged stretch can be cut away.
+pub(super) fn read_into(
+    source: Source,
+    layout: &Layout,
+    part: Part,
+    sink: &mut dyn Sink,
+    warnings: &mut Vec<String>,
+) -> Found<usize> {
+    let parser = Parser::new(layout, source.separator, source.header.len());
+    let mut progress = Progress::new(&source, layout, part);
+    let mut lines = Lines::new(source.text);
+    let (mut done, mut parsing, mut reading) = (Batch::new(), Batch::new(), Batch::new());
+    loop {
+        let (merged, ()) = rayon::join(
+            || {
+                done.merge(&mut progress, sink)?;
+                reading.fill(&mut lines);
+                Ok(())
+            },
+            || parsing.parse(&parser),
+        );
+        merged?;
+        if progress.ended || (parsing.is_empty() && reading.is_empty()) {
+            break;
+        }
+        std::mem::swap(&mut done, &mut parsing);
+        std::mem::swap(&mut parsing, &mut reading);
+    }
+    progress.finish(warnings)?;
+    Ok(progress.first_row)
+}
+
+/// Stretches that are read, parsed and put together at one go.
+struct Batch {
+    stretches: Vec<(Vec<u8>, Parsed)>,
+    used: usize,
+    /// Why reading ended behind the last stretch.
+    error: Option<io::Error>,
+}
+
+impl Batch {
+    fn new() -> Batch {
+        let stretches = (4 * rayon::current_num_threads()).min(MOST_STRETCHES);
+        Batch {
+            stretches: (0..stretches).map(|_| Default::default()).collect(),
+            used: 0,
+            error: None,
+        }
+    }
+
+    fn is_empty(&self) -> bool {
+        self.used == 0 && self.error.is_none()
+    }
+
+    fn fill(&mut self, lines: &mut Lines) {
+        self.used = 0;
+        for (text, _) in &mut self.stretches {
+            self.error = lines.fill(text).err();
+            if text.is_empty() {
+                break;
+            }
+            self.used += 1;
+            if self.error.is_some() {
+                break;
+            }
+        }
+    }
+
+    fn parse(&mut self, parser: &Parser) {
+        let used = self.stretches.get_mut(..self.used).unwrap_or_default();
+        used.par_iter_mut()
+            .for_each(|(text, parsed)| parser.parse(text, parsed));
+    }
+
+    fn merge(&mut self, progress: &mut Progress, sink: &mut dyn Sink) -> Found<()> {
+        for (text, parsed) in self.stretches.iter().take(self.used) {
+            if progress.ended {
+                return Ok(());
+            }
+            progress.merge(text, parsed, sink)?;
+        }
+        match self.error.take() {
+            Some(error) if !progress.ended => Err(Problem::Damaged {
+                rows: progress.rows,
+                reason: format!("{error} (is the file truncated?)"),
+            }),
+            _ => Ok(()),
+        }
     }
 }
 
@@ -43,12 +178,23 @@ struct Place {
 }
 
 /// What the rows so far say about the rows to come.
-#[derive(Default)]
 struct Progress {
+    part: Part,
+    /// The channels' names.
+    names: Vec<String>,
+    /// Fields of the header.
+    expected: usize,
+    /// Line of the file that comes next, counted from 1.
+    line: u64,
     /// Data rows seen.
     rows: usize,
+    /// Rows of the part, and the data row of the first.
+    taken: usize,
+    first_row: usize,
     previous: Option<f64>,
     inside: bool,
+    /// No row to come can belong to the part.
+    ended: bool,
     /// The last step back in time: where, from and to.
     step_back: Option<(Place, f64, f64)>,
     /// An incomplete row, fine if it is the last one.
@@ -56,105 +202,64 @@ struct Progress {
     extent: Option<(f64, f64)>,
 }
 
-/// Reads the rows of the part. Other rows only have their stamps looked at, and none at all when
-/// the part is given by rows: so a damaged stretch can be cut away.
-pub(super) fn read(
-    mut source: Source,
-    layout: &Layout,
-    part: Part,
-    warnings: &mut Vec<String>,
-) -> Found<Table> {
-    let columns = vec![Vec::new(); layout.channels.len()];
-    let first_row = FIRST_ROW;
-    let mut table = Table { first_row, columns };
-    let mut progress = Progress::default();
-    let mut record = ByteRecord::new();
-    while next(&mut source.rows, &mut record, progress.rows)? {
-        if is_blank(&record) {
-            continue;
-        }
-        let row = FIRST_ROW + progress.rows;
-        progress.rows += 1;
-        if part.ends_before(row) {
-            break;
-        }
-        if matches!(part, Part::Rows { .. }) && !part.contains(row, 0.0) {
-            continue;
-        }
-        let line = record.position().map_or(0, csv::Position::line) + source.header_lines;
-        let place = Place { row, line };
-        if progress.complete(place, &record, source.header.len())? {
-            let row = Row {
-                record: &record,
-                place,
-                separator: source.separator,
-            };
-            row.take(&mut table, &mut progress, layout, part)?;
-        }
-    }
-    progress.finish(&table, part, warnings)?;
-    Ok(table)
-}
-
-fn next(
-    rows: &mut csv::Reader<Box<dyn BufRead>>,
-    record: &mut ByteRecord,
-    rows_before: usize,
-) -> Found<bool> {
-    rows.read_byte_record(record)
-        .map_err(|error| Problem::Damaged {
-            rows: rows_before,
-            reason: match error.into_kind() {
-                csv::ErrorKind::Io(error) => format!("{error} (is the file truncated?)"),
-                other => format!("{other:?}"),
-            },
-        })
-}
-
-/// One complete row.
-struct Row<'a> {
-    record: &'a ByteRecord,
-    place: Place,
-    separator: u8,
-}
-
-impl Row<'_> {
-    /// Stamp, order and part of the row; its values if it belongs to the part.
-    fn take(
-        &self,
-        table: &mut Table,
-        progress: &mut Progress,
-        layout: &Layout,
-        part: Part,
-    ) -> Found<()> {
-        let Some(time) = layout.channels.first() else {
-            return Ok(());
-        };
-        let time = self.value(time)?;
-        if !progress.enters(self.place, time, part, table)? {
-            return Ok(());
-        }
-        for (i, (channel, column)) in layout.channels.iter().zip(&mut table.columns).enumerate() {
-            column.push(if i == 0 { time } else { self.value(channel)? });
-        }
-        Ok(())
-    }
-
-    fn value(&self, channel: &Channel) -> Found<f64> {
-        let field = self.record.get(channel.index).unwrap_or_default();
-        let value = number(field, self.separator).ok_or_else(|| Problem::BadNumber {
-            row: self.place.row,
-            line: self.place.line,
-            column: channel.name.clone(),
-            text: String::from_utf8_lossy(field).chars().take(40).collect(),
-        })?;
-        Ok(value * channel.factor)
-    }
-}
-
 impl Progress {
+    fn new(source: &Source, layout: &Layout, part: Part) -> Progress {
+        Progress {
+            part,
+            names: layout.channels.iter().map(|c| c.name.clone()).collect(),
+            expected: source.header.len(),
+            line: source.header_lines + 1,
+            rows: 0,
+            taken: 0,
+            first_row: FIRST_ROW,
+            previous: None,
+            inside: false,
+            ended: false,
+            step_back: None,
+            cut_off: None,
+            extent: None,
+        }
+    }
+
+    /// Goes through the rows of a stretch and hands those of the part on.
+    fn merge(&mut self, text: &[u8], parsed: &Parsed, sink: &mut dyn Sink) -> Found<()> {
+        let mut odd = parsed.odd.as_slice();
+        let mut run = 0..0;
+        for (k, &time) in parsed.column(0).iter().enumerate() {
+            let (here, later) = odd.split_at(odd.partition_point(|(row, _)| *row <= k));
+            odd = later;
+            let row = FIRST_ROW + self.rows;
+            if self.part.ends_before(row) {
+                self.ended = true;
+                break;
+            }
+            self.rows += 1;
+            if matches!(self.part, Part::Rows { .. }) && !self.part.contains(row, 0.0) {
+                continue;
+            }
+            let line = self.line + parsed.line(k);
+            let place = Place { row, line };
+            if !self.complete(place, here)? {
+                continue;
+            }
+            self.check_numbers(place, here, text, 0..1)?;
+            if !self.enters(place, time)? {
+                continue;
+            }
+            self.check_numbers(place, here, text, 1..usize::MAX)?;
+            if run.end != k {
+                sink.append(parsed, run)?;
+                run = k..k;
+            }
+            run.end = k + 1;
+        }
+        self.line += parsed.lines;
+        sink.append(parsed, run)
+    }
+
     /// Whether the row has as many fields as the header; one that has fewer may end the file.
-    fn complete(&mut self, place: Place, record: &ByteRecord, expected: usize) -> Found<bool> {
+    fn complete(&mut self, place: Place, odd: &[(usize, Oddity)]) -> Found<bool> {
+        let expected = self.expected;
         let error = |Place { row, line }, found| Problem::FieldCount {
             row,
             line,
@@ -164,25 +269,49 @@ impl Progress {
         if let Some((place, found)) = self.cut_off {
             return Err(error(place, found));
         }
-        let found = record.len();
-        if found > expected && !record.iter().skip(expected).all(<[u8]>::is_empty) {
-            return Err(error(place, found));
+        match odd.first() {
+            Some(&(_, Oddity::Fields(found))) if found > expected => Err(error(place, found)),
+            Some(&(_, Oddity::Fields(found))) => {
+                self.cut_off = Some((place, found));
+                Ok(false)
+            }
+            _ => Ok(true),
         }
-        if found < expected {
-            self.cut_off = Some((place, found));
+    }
+
+    /// Whether the fields of these channels are numbers.
+    fn check_numbers(
+        &self,
+        Place { row, line }: Place,
+        odd: &[(usize, Oddity)],
+        text: &[u8],
+        channels: Range<usize>,
+    ) -> Found<()> {
+        for (_, oddity) in odd {
+            if let Oddity::NoNumber(channel, bytes) = oddity
+                && channels.contains(channel)
+            {
+                let (field, _) = unquoted(text.get(bytes.clone()).unwrap_or_default());
+                let column = self.names.get(*channel).cloned();
+                return Err(Problem::BadNumber {
+                    row,
+                    line,
+                    column: column.unwrap_or_default(),
+                    text: String::from_utf8_lossy(field).chars().take(40).collect(),
+                });
+            }
         }
-        Ok(found >= expected)
+        Ok(())
     }
 
     /// Whether the row belongs to the part; within the part, time must not go back.
-    fn enters(&mut self, place: Place, time: f64, part: Part, table: &mut Table) -> Found<bool> {
+    fn enters(&mut self, place: Place, time: f64) -> Found<bool> {
         if let Some(before) = self.previous.filter(|&before| time < before) {
             self.step_back = Some((place, before, time));
         }
         let was_inside = self.inside;
-        self.inside = part.contains(place.row, time) || (time.is_nan() && was_inside);
-        let begun = !table.stamps().is_empty();
-        if self.inside && begun {
+        self.inside = self.part.contains(place.row, time) || (time.is_nan() && was_inside);
+        if self.inside && self.taken > 0 {
             // A second entrance means that time went back on the way, too.
             if let Some((at, before, time)) = self.step_back
                 && (!was_inside || at.row == place.row)
@@ -195,8 +324,11 @@ impl Progress {
                 });
             }
         }
-        if self.inside && !begun {
-            table.first_row = place.row;
+        if self.inside {
+            if self.taken == 0 {
+                self.first_row = place.row;
+            }
+            self.taken += 1;
         }
         if time.is_finite() {
             self.previous = Some(time);
@@ -206,7 +338,7 @@ impl Progress {
         Ok(self.inside)
     }
 
-    fn finish(&self, table: &Table, part: Part, warnings: &mut Vec<String>) -> Found<()> {
+    fn finish(&self, warnings: &mut Vec<String>) -> Found<()> {
         if let Some((Place { row, line }, found)) = self.cut_off {
             warnings.push(format!(
                 "Row {row} (line {line}), the last one, holds only {found} fields; it is left out."
@@ -218,65 +350,20 @@ impl Progress {
                  (line {line})."
             ));
         }
-        let rows = table.stamps().len();
-        if rows >= FEWEST_ROWS {
+        if self.taken >= FEWEST_ROWS {
             return Ok(());
         }
         let times = self.extent.map_or_else(String::new, |(low, high)| {
             format!(", t from {low} to {high} s")
         });
-        let extent = match part {
+        let extent = match self.part {
             Part::Whole => format!("the log has {} rows{times}", self.rows),
-            _ => format!("of the part {part}, {} rows were read{times}", self.rows),
+            part => format!("of the part {part}, {} rows were read{times}", self.rows),
         };
         Err(Problem::TooFewRows {
-            rows,
+            rows: self.taken,
             needed: FEWEST_ROWS,
             extent,
         })
-    }
-}
-
-fn is_blank(record: &ByteRecord) -> bool {
-    record.get(0).is_none_or(blank) && record.iter().all(blank)
-}
-
-fn blank(field: &[u8]) -> bool {
-    field.trim_ascii().is_empty()
-}
-
-/// The number in a field; an empty field is NaN. A decimal comma is understood where the comma
-/// does not separate fields.
-fn number(field: &[u8], separator: u8) -> Option<f64> {
-    let text = std::str::from_utf8(field).ok()?;
-    if let Ok(value) = text.parse() {
-        return Some(value);
-    }
-    let text = text.trim();
-    if text.is_empty() {
-        return Some(f64::NAN);
-    }
-    let plain = text.parse().ok();
-    if separator == b',' {
-        plain
-    } else {
-        plain.or_else(|| text.replace(',', ".").parse().ok())
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn number_in_any_spelling_of_a_logger_is_read() {
-        assert_eq!(number(b"-1.5e-3", b','), Some(-1.5e-3));
-        assert_eq!(number(b"  2 ", b','), Some(2.0));
-        assert_eq!(number(b"0,25", b';'), Some(0.25));
-        assert_eq!(number(b"0,25", b','), None);
-        assert!(number(b"", b',').is_some_and(f64::is_nan));
-        assert!(number(b"NaN", b',').is_some_and(f64::is_nan));
-        assert_eq!(number(b"\xff", b','), None);
-        assert_eq!(number(b"1.2.3", b';'), None);
     }
 }
