@@ -7,7 +7,8 @@ use super::error::{Found, Problem};
 use super::rate::{fits, rate, shown};
 use super::resample;
 use super::spec::Part;
-use super::table::Table;
+use super::stamps::{Ends, Kept, Stamps, each_step};
+use super::table::at;
 
 /// More repeated stamps than this fraction are no accident.
 const REPEATED: f64 = 0.05;
@@ -18,6 +19,15 @@ const GAP: f64 = 5.0;
 /// A grid with more samples per row than this comes from a mistake, not from a log.
 const SAMPLES_PER_ROW: f64 = 50.0;
 
+/// The stamps of the rows of a log, and what else is asked about those rows.
+pub(super) struct Stamped<'a> {
+    pub stamps: &'a dyn Stamps,
+    /// Data row of the first stamp.
+    pub first_row: usize,
+    /// How many of these rows differ from the row before in any column.
+    pub differ: &'a dyn Fn(&[usize]) -> usize,
+}
+
 /// A uniform time grid, and how the rows of a log get onto it.
 #[derive(Debug)]
 pub(super) struct Grid {
@@ -27,69 +37,63 @@ pub(super) struct Grid {
     pub start: f64,
     /// Samples.
     pub len: usize,
-    /// The rows that count, if some repeat a stamp.
-    kept: Option<Vec<usize>>,
-    /// Their stamps, if samples must be interpolated.
-    stamps: Option<Vec<f64>>,
+    /// The rows that do not count, because they repeat a stamp; ascending.
+    pub dropped: Vec<usize>,
+    /// Samples must be interpolated; otherwise the rows that count are the samples.
+    pub interpolated: bool,
 }
 
 impl Grid {
-    /// The grid for the table's stamps, at the given rate or at the one the stamps show.
+    /// The grid for these stamps, at the given rate or at the one the stamps show.
     ///
     /// Uniform stamps keep their samples; others get the grid `t[0] + k / rate` up to
     /// `t[last] + 0.5 / rate` (NumPy: `arange(t[0], t[-1] + 0.5 / rate, 1 / rate)`), and not
     /// beyond the end of the part.
     pub fn of(
-        table: &Table,
+        rows: &Stamped<'_>,
         part: Part,
         given: Option<f64>,
         warnings: &mut Vec<String>,
     ) -> Found<Grid> {
-        let all = table.stamps();
-        let start = all.first().copied().unwrap_or(0.0);
-        if let Some(rate_hz) = given.filter(|&rate| fits(all, rate, true)) {
-            return Ok(Grid {
-                rate_hz,
-                start,
-                len: all.len(),
-                kept: None,
-                stamps: None,
-            });
-        }
-        let kept = without_repeats(table, warnings)?;
-        let stamps: Vec<f64> = match &kept {
-            Some(kept) => gather(all, kept),
-            None => all.to_vec(),
+        let all = rows.stamps.ends();
+        let uniform = |rate_hz, len, dropped| Grid {
+            rate_hz,
+            start: all.first,
+            len,
+            dropped,
+            interpolated: false,
         };
-        let rate_hz = rate(&stamps, given, warnings);
-        if fits(&stamps, rate_hz, false) {
-            return Ok(Grid {
-                rate_hz,
-                start,
-                len: stamps.len(),
-                kept,
-                stamps: None,
-            });
+        if let Some(rate_hz) = given
+            && fits(rows.stamps, rate_hz, true)?
+        {
+            return Ok(uniform(rate_hz, all.len, Vec::new()));
         }
-        let len = length(&stamps, rate_hz)?;
-        let len = cut(part, rate_hz, start, len);
-        report_irregular(&stamps, rate_hz, table, kept.as_deref(), warnings);
+        let dropped = repeats(rows, warnings)?;
+        let stamps = Kept::new(rows.stamps, &dropped);
+        let rate_hz = rate(&stamps, given, warnings)?;
+        if fits(&stamps, rate_hz, false)? {
+            let len = stamps.ends().len;
+            return Ok(uniform(rate_hz, len, dropped));
+        }
+        let len = cut(part, rate_hz, all.first, length(stamps.ends(), rate_hz)?);
+        report_irregular(&stamps, rate_hz, rows.first_row, &dropped, warnings)?;
         Ok(Grid {
             rate_hz,
-            start,
+            start: all.first,
             len,
-            kept,
-            stamps: Some(stamps),
+            dropped,
+            interpolated: true,
         })
     }
 
     /// The samples of the grid that the given rows (ascending ranges) enter.
-    pub fn samples(&self, stamps: &[f64], rows: &[Range<usize>]) -> Vec<Range<usize>> {
-        let place = |row: usize| {
-            stamps
-                .get(row)
-                .map_or(self.len as f64, |t| (t - self.start) * self.rate_hz)
-        };
+    pub fn samples(
+        &self,
+        stamp: impl Fn(usize) -> Option<f64>,
+        rows: &[Range<usize>],
+    ) -> Vec<Range<usize>> {
+        let place =
+            |row: usize| stamp(row).map_or(self.len as f64, |t| (t - self.start) * self.rate_hz);
         let mut samples: Vec<Range<usize>> = Vec::new();
         for range in rows {
             // One row further on either side: interpolation reaches to the neighbours.
@@ -105,63 +109,85 @@ impl Grid {
         samples
     }
 
-    /// Columns of the table on the grid.
-    pub fn apply(&self, columns: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+    /// Columns with the given stamps on the grid.
+    pub fn apply(&self, stamps: &[f64], columns: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+        let kept = self.interpolated.then(|| self.keep(0, stamps.to_vec()));
         let column = |column: Vec<f64>| {
-            let column = match &self.kept {
-                Some(kept) => gather(&column, kept),
-                None => column,
-            };
-            match &self.stamps {
-                Some(stamps) => {
-                    resample::onto_grid(stamps, &column, self.start, self.rate_hz, self.len)
+            let column = self.keep(0, column);
+            match &kept {
+                Some(kept) => {
+                    resample::onto_grid(kept, &column, self.start, self.rate_hz, 0..self.len)
                 }
                 None => column,
             }
         };
         columns.into_iter().map(column).collect()
     }
+
+    /// The values of the rows that count, of a column that begins at row `first`.
+    pub fn keep(&self, first: usize, mut values: Vec<f64>) -> Vec<f64> {
+        if !self.dropped.is_empty() {
+            let mut row = first;
+            values.retain(|_| {
+                row += 1;
+                self.dropped.binary_search(&(row - 1)).is_err()
+            });
+        }
+        values
+    }
+
+    /// The row that holds the `k`-th value that counts.
+    pub fn row(&self, k: usize) -> usize {
+        row_of(k, &self.dropped)
+    }
 }
 
-fn gather(values: &[f64], kept: &[usize]) -> Vec<f64> {
-    kept.iter()
-        .filter_map(|&k| values.get(k).copied())
-        .collect()
+/// Where the `k`-th of the rows that are not dropped stands among all.
+fn row_of(k: usize, dropped: &[usize]) -> usize {
+    let (mut low, mut high) = (0, dropped.len());
+    while low < high {
+        let middle = (low + high) / 2;
+        match dropped.get(middle) {
+            Some(&row) if row - middle <= k => low = middle + 1,
+            _ => high = middle,
+        }
+    }
+    k + low
 }
 
-/// The rows that carry a stamp of their own, if some do not: of equal stamps the first row stays.
-fn without_repeats(table: &Table, warnings: &mut Vec<String>) -> Found<Option<Vec<usize>>> {
-    let stamps = table.stamps();
-    let repeats: Vec<usize> = (1..stamps.len())
-        .filter(|&k| stamps[k] == stamps[k - 1])
-        .collect();
-    let Some(&first) = repeats.first() else {
-        return Ok(None);
+/// The rows that carry the stamp of the row before.
+fn repeats(rows: &Stamped<'_>, warnings: &mut Vec<String>) -> Found<Vec<usize>> {
+    let len = rows.stamps.ends().len;
+    let bearable = REPEATED * len as f64;
+    let (mut count, mut first, mut repeats) = (0, None, Vec::new());
+    each_step(rows.stamps, &mut |k, time, step| {
+        if step == 0.0 {
+            count += 1;
+            first = first.or(Some((k + 1, time)));
+            if count as f64 <= bearable {
+                repeats.push(k + 1);
+            }
+        }
+    })?;
+    let Some((first, time)) = first else {
+        return Ok(repeats);
     };
-    let (count, rows) = (repeats.len(), stamps.len());
-    if count as f64 > REPEATED * rows as f64 {
-        let row = table.first_row + first;
+    let row = rows.first_row + first;
+    if count as f64 > bearable {
         return Err(Problem::RepeatedStamps {
             count,
-            rows,
+            rows: len,
             row,
-            time: stamps[first],
+            time,
         });
     }
-    let differ = repeats
-        .iter()
-        .filter(|&&k| table.columns.iter().any(|c| c.get(k) != c.get(k - 1)));
     warnings.push(format!(
         "Rows that carry the stamp of the row before are left out: {count}, of which {} have other \
          values; the first is {}.",
-        differ.count(),
-        table.at(first)
+        (rows.differ)(&repeats),
+        at(row, time)
     ));
-    Ok(Some(
-        (0..rows)
-            .filter(|k| repeats.binary_search(k).is_err())
-            .collect(),
-    ))
+    Ok(repeats)
 }
 
 /// Length of the grid inside the part: the half step that the grid may reach beyond the last row
@@ -178,61 +204,78 @@ fn cut(part: Part, rate_hz: f64, start: f64, len: usize) -> usize {
 }
 
 /// `len(numpy.arange(first, last + 0.5 / rate, 1 / rate))`, if it is a sensible number.
-fn length(stamps: &[f64], rate_hz: f64) -> Found<usize> {
-    let (Some(first), Some(last)) = (stamps.first(), stamps.last()) else {
-        return Ok(0);
-    };
+fn length(Ends { first, last, len }: Ends, rate_hz: f64) -> Found<usize> {
     let samples = ((last + 0.5 / rate_hz - first) / (1.0 / rate_hz)).ceil();
-    let rows = stamps.len();
-    if samples <= SAMPLES_PER_ROW * rows as f64 {
+    if samples <= SAMPLES_PER_ROW * len as f64 {
         return Ok(samples as usize);
     }
     Err(Problem::TooLong {
         rate_hz,
         seconds: last - first,
         samples,
-        rows,
+        rows: len,
     })
 }
 
 /// Says how irregular the stamps are, and where the longest gaps lie.
 fn report_irregular(
-    stamps: &[f64],
+    stamps: &dyn Stamps,
     rate_hz: f64,
-    table: &Table,
-    kept: Option<&[usize]>,
+    first_row: usize,
+    dropped: &[usize],
     warnings: &mut Vec<String>,
-) {
+) -> Found<()> {
     const LISTED: usize = 5;
-    let at = |k: usize| table.at(kept.and_then(|kept| kept.get(k).copied()).unwrap_or(k));
-    let steps: Vec<f64> = stamps
-        .windows(2)
-        .map(|pair| (pair[1] - pair[0]) * rate_hz)
-        .collect();
-    let irregular = steps.iter().filter(|step| (*step - 1.0).abs() > 0.1);
-    let longest = steps.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1));
-    let Some((place, step)) = longest else { return };
     let ms = |steps: f64| shown(steps * 1e3 / rate_hz);
+    let place = |k: usize, time: f64| at(first_row + row_of(k, dropped), time);
+    let mut irregular = 0;
+    let mut longest: Option<(f64, usize, f64)> = None;
+    let (mut gaps, mut listed) = (0, Vec::new());
+    each_step(stamps, &mut |k, time, step| {
+        let steps = step * rate_hz;
+        irregular += usize::from((steps - 1.0).abs() > 0.1);
+        if longest.is_none_or(|(so_far, ..)| steps >= so_far) {
+            longest = Some((steps, k, time));
+        }
+        if steps > GAP {
+            gaps += 1;
+            if gaps <= LISTED {
+                listed.push(format!("{} ms after {}", ms(steps), place(k, time)));
+            }
+        }
+    })?;
+    let Some((steps, k, time)) = longest else {
+        return Ok(());
+    };
     warnings.push(format!(
-        "The stamps are irregular: {} of {} steps differ from {} ms by more than 10 %, the \
+        "The stamps are irregular: {irregular} of {} steps differ from {} ms by more than 10 %, the \
          longest is {} ms (after {}); samples were interpolated linearly onto {} Hz.",
-        irregular.count(),
-        steps.len(),
+        stamps.ends().len - 1,
         ms(1.0),
-        ms(*step),
-        at(place),
+        ms(steps),
+        place(k, time),
         shown(rate_hz),
     ));
-    let gaps: Vec<String> = (steps.iter().enumerate())
-        .filter(|(_, step)| **step > GAP)
-        .map(|(k, step)| format!("{} ms after {}", ms(*step), at(k)))
-        .collect();
-    if !gaps.is_empty() {
+    if gaps > 0 {
         warnings.push(format!(
-            "Gaps longer than {GAP} steps are bridged by straight lines ({}): {}{}.",
-            gaps.len(),
-            gaps[..gaps.len().min(LISTED)].join("; "),
-            if gaps.len() > LISTED { "; ..." } else { "" },
+            "Gaps longer than {GAP} steps are bridged by straight lines ({gaps}): {}{}.",
+            listed.join("; "),
+            if gaps > LISTED { "; ..." } else { "" },
         ));
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn row_of_a_value_counts_the_dropped_rows_before_it() {
+        let dropped = [2, 3, 7];
+        let kept: Vec<usize> = (0..10).filter(|row| !dropped.contains(row)).collect();
+        for (k, row) in kept.iter().enumerate() {
+            assert_eq!(row_of(k, &dropped), *row);
+        }
     }
 }

@@ -1,5 +1,9 @@
 //! The sampling rate that stamps show, and whether they keep to one.
 
+use super::error::Found;
+use super::order;
+use super::stamps::{Ends, Stamps, each_step};
+
 /// Stamps within this fraction of a step of the grid are on it.
 const ON_GRID: f64 = 1e-3;
 
@@ -15,52 +19,55 @@ const ROUND: [f64; 12] = [1.0, 1.2, 1.25, 1.5, 2.0, 2.4, 2.5, 3.0, 4.0, 5.0, 6.0
 ///
 /// Decimals coarser than half a step would hide lost samples; they count only when the rate was
 /// `given` by the user.
-pub(super) fn fits(stamps: &[f64], rate_hz: f64, given: bool) -> bool {
-    let Some(&start) = stamps.first() else {
-        return true;
-    };
+pub(super) fn fits(stamps: &dyn Stamps, rate_hz: f64, given: bool) -> Found<bool> {
     let step = 1.0 / rate_hz;
-    let quantum = quantum(stamps);
+    let quantum = quantum(stamps)?;
     let mut tolerance = ON_GRID * step;
     if given || quantum <= 0.5 * step {
         tolerance = tolerance.max(0.5 * quantum * (1.0 + 1e-6));
     }
-    let (mut low, mut high) = (0.0_f64, 0.0_f64);
-    for (k, &stamp) in stamps.iter().enumerate() {
-        let deviation = stamp - start - k as f64 * step;
-        if deviation.is_nan() {
-            return false;
+    let Ends { first, .. } = stamps.ends();
+    let (mut low, mut high, mut k) = (0.0_f64, 0.0_f64, 0_usize);
+    let mut numbers = true;
+    stamps.each(&mut |stamps| {
+        for stamp in stamps {
+            let deviation = stamp - first - k as f64 * step;
+            numbers &= !deviation.is_nan();
+            low = low.min(deviation);
+            high = high.max(deviation);
+            k += 1;
         }
-        low = low.min(deviation);
-        high = high.max(deviation);
-    }
-    high - low <= 2.0 * tolerance
+    })?;
+    Ok(numbers && high - low <= 2.0 * tolerance)
 }
 
 /// The last decimal place that the stamps use, s; zero if they use more than nine.
-fn quantum(stamps: &[f64]) -> f64 {
+fn quantum(stamps: &dyn Stamps) -> Found<f64> {
     let mut scale = 1.0;
     let mut decimals = 0;
-    for &stamp in stamps {
-        loop {
-            let scaled = stamp * scale;
-            let rounding = 1e-4 + 4.0 * f64::EPSILON * scaled.abs();
-            if (scaled - scaled.round()).abs() <= rounding {
-                break;
-            }
-            decimals += 1;
-            scale *= 10.0;
-            if decimals > 9 {
-                return 0.0;
+    stamps.each(&mut |stamps| {
+        for &stamp in stamps {
+            while decimals <= 9 {
+                let scaled = stamp * scale;
+                let rounding = 1e-4 + 4.0 * f64::EPSILON * scaled.abs();
+                if (scaled - scaled.round()).abs() <= rounding {
+                    break;
+                }
+                decimals += 1;
+                scale *= 10.0;
             }
         }
-    }
-    1.0 / scale
+    })?;
+    Ok(if decimals > 9 { 0.0 } else { 1.0 / scale })
 }
 
 /// The given rate, else a simple rate that explains every stamp, else the median step's.
-pub(super) fn rate(stamps: &[f64], given: Option<f64>, warnings: &mut Vec<String>) -> f64 {
-    let median = 1.0 / median_step(stamps);
+pub(super) fn rate(
+    stamps: &dyn Stamps,
+    given: Option<f64>,
+    warnings: &mut Vec<String>,
+) -> Found<f64> {
+    let median = 1.0 / median_step(stamps)?;
     if let Some(given) = given {
         if (median / given - 1.0).abs() > NEAR_ROUND {
             warnings.push(format!(
@@ -68,9 +75,9 @@ pub(super) fn rate(stamps: &[f64], given: Option<f64>, warnings: &mut Vec<String
                 shown(median)
             ));
         }
-        return given;
+        return Ok(given);
     }
-    let found = estimate(stamps, median);
+    let found = estimate(stamps, median)?;
     if !(2.0..=1e5).contains(&found) {
         warnings.push(format!(
             "The stamps say {} Hz; if they are not seconds, write t = {{ unit = \"ms\" }} (or us, \
@@ -78,37 +85,37 @@ pub(super) fn rate(stamps: &[f64], given: Option<f64>, warnings: &mut Vec<String
             shown(found)
         ));
     }
-    found
+    Ok(found)
 }
 
 /// A simple rate that explains every stamp, else a round rate near the median step's.
-fn estimate(stamps: &[f64], median: f64) -> f64 {
-    let ends = stamps.last().zip(stamps.first());
-    let span = ends.map_or(0.0, |(last, first)| last - first);
-    let mean = (stamps.len().saturating_sub(1)) as f64 / span;
+fn estimate(stamps: &dyn Stamps, median: f64) -> Found<f64> {
+    let Ends { first, last, len } = stamps.ends();
+    let mean = (len.saturating_sub(1)) as f64 / (last - first);
     let whole_microseconds = 1e6 / (1e6 / mean).round();
     for rate in [round_rate(mean), mean.round(), whole_microseconds, mean] {
-        if rate > 0.0 && fits(stamps, rate, false) {
-            return rate;
+        if rate > 0.0 && fits(stamps, rate, false)? {
+            return Ok(rate);
         }
     }
     let near = round_rate(median);
-    if (near / median - 1.0).abs() <= NEAR_ROUND {
+    Ok(if (near / median - 1.0).abs() <= NEAR_ROUND {
         near
     } else if median >= 10.0 {
         median.round()
     } else {
         median
-    }
+    })
 }
 
-fn median_step(stamps: &[f64]) -> f64 {
-    let mut steps: Vec<f64> = stamps.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    let middle = steps.len() / 2;
-    if steps.is_empty() {
-        return f64::NAN;
+fn median_step(stamps: &dyn Stamps) -> Found<f64> {
+    let steps = stamps.ends().len.saturating_sub(1);
+    if steps == 0 {
+        return Ok(f64::NAN);
     }
-    *steps.select_nth_unstable_by(middle, f64::total_cmp).1
+    order::select(steps / 2, |see| {
+        each_step(stamps, &mut |_, _, step| see(step))
+    })
 }
 
 /// The round rate nearest to this one.

@@ -10,7 +10,7 @@ use super::companion::Companion;
 use super::doubt;
 use super::drives;
 use super::error::{Found, LogError, Problem};
-use super::grid::Grid;
+use super::grid::{Grid, Stamped};
 use super::lookup::{Channel, Lookup};
 use super::recording::Recording;
 use super::source;
@@ -76,7 +76,7 @@ pub fn read(
     let layout = lookup.layout(&mut warnings)?;
     let table = table::read(source, &layout, spec.part, &mut warnings).map_err(in_log)?;
     check_finite(&table, &layout.channels, 0..1).map_err(in_log)?;
-    let grid = Grid::of(&table, spec.part, companion.rate_hz, &mut warnings).map_err(in_log)?;
+    let grid = grid(&table, spec, &companion, &mut warnings).map_err(in_log)?;
     let mut rows = Rows::of(table, &layout, drives, options, &mut warnings).map_err(in_log)?;
     let doubtful = doubt::bridge(
         &rows.table,
@@ -89,10 +89,25 @@ pub fn read(
         .check(joints, companion.encoder_resolution, &mut warnings);
     if let (None, Some(q_ref)) = (&companion.reference, rows.q_ref.take()) {
         companion.reference = Some(Reference::Sampled {
-            q: grid.apply(q_ref),
+            q: grid.apply(rows.table.stamps(), q_ref),
         });
     }
     Ok((rows.recording(spec, &grid, &doubtful, warnings), companion))
+}
+
+fn grid(
+    table: &Table,
+    spec: &LogSpec,
+    companion: &Companion,
+    warnings: &mut Vec<String>,
+) -> Found<Grid> {
+    let differs = |k: &&usize| table.columns.iter().any(|c| c.get(**k) != c.get(**k - 1));
+    let rows = Stamped {
+        stamps: &table.stamps(),
+        first_row: table.first_row,
+        differ: &|rows| rows.iter().filter(differs).count(),
+    };
+    Grid::of(&rows, spec.part, companion.rate_hz, warnings)
 }
 
 fn companion(spec: &LogSpec, options: &ReadOptions) -> Result<Companion, LogError> {
@@ -163,7 +178,8 @@ impl Rows {
         doubtful: &[Range<usize>],
         warnings: Vec<String>,
     ) -> Recording {
-        let doubtful = grid.samples(self.table.stamps(), doubtful);
+        let stamps = self.table.columns.into_iter().next().unwrap_or_default();
+        let doubtful = grid.samples(|row| stamps.get(row).copied(), doubtful);
         Recording {
             doubtful,
             name: spec.name.clone(),
@@ -171,10 +187,10 @@ impl Rows {
             rate_hz: grid.rate_hz,
             start: grid.start,
             len: grid.len,
-            q: grid.apply(self.q),
-            qd: self.qd.map(|qd| grid.apply(qd)),
-            tau: self.tau.map(|tau| grid.apply(tau)),
-            stamps: self.table.columns.into_iter().next().unwrap_or_default(),
+            q: grid.apply(&stamps, self.q),
+            qd: self.qd.map(|qd| grid.apply(&stamps, qd)),
+            tau: self.tau.map(|tau| grid.apply(&stamps, tau)),
+            stamps,
             warnings,
         }
     }

@@ -1,16 +1,18 @@
 //! Linear interpolation: from stamps to the uniform grid, and back.
 
+use std::ops::Range;
+
 use super::rate;
 use super::recording::Recording;
 
-/// The series known at increasing `stamps`, at `start + k / rate_hz` for `k < len`; held before
+/// The series known at increasing `stamps`, at `start + k / rate_hz` for all `k` of `range`; held before
 /// the first and after the last stamp, as NumPy's `interp` does.
 pub(super) fn onto_grid(
     stamps: &[f64],
     series: &[f64],
     start: f64,
     rate_hz: f64,
-    len: usize,
+    range: Range<usize>,
 ) -> Vec<f64> {
     let mut j = 0;
     let at = |k: usize| {
@@ -26,7 +28,7 @@ pub(super) fn onto_grid(
             _ => y0,
         }
     };
-    (0..len).map(at).collect()
+    range.map(at).collect()
 }
 
 /// A series on the recording's uniform grid, at the stamps of the rows of the log: one value per
@@ -37,7 +39,8 @@ pub(super) fn onto_grid(
 /// series of another length is understood to begin with the grid; an empty one gives NaN.
 pub fn onto_stamps(recording: &Recording, series: &[f64]) -> Vec<f64> {
     let stamps = &recording.stamps;
-    if stamps.len() == series.len() && rate::fits(stamps, recording.rate_hz, true) {
+    let uniform = rate::fits(&stamps.as_slice(), recording.rate_hz, true);
+    if stamps.len() == series.len() && uniform.unwrap_or(false) {
         return series.to_vec();
     }
     let last = series.len().saturating_sub(1);
@@ -73,7 +76,7 @@ mod tests {
 
     #[test]
     fn series_on_a_grid_passes_through_its_stamps_and_is_held_beyond() {
-        let found = onto_grid(&[1.0, 1.5, 2.5], &[10.0, 20.0, 0.0], 0.5, 2.0, 6);
+        let found = onto_grid(&[1.0, 1.5, 2.5], &[10.0, 20.0, 0.0], 0.5, 2.0, 0..6);
         assert_eq!(found, [10.0, 10.0, 20.0, 10.0, 0.0, 0.0]);
     }
 
