@@ -6,7 +6,6 @@
 
 use std::ops::Range;
 
-use super::table::Table;
 use crate::model::Joint;
 
 /// More than this fraction of bad values in one channel is no accident: the log is refused.
@@ -28,51 +27,41 @@ const STUCK_ROWS: usize = 8;
 /// ... and then jumps by more than this many times a fast step.
 const STUCK_JUMP: f64 = 8.0;
 
-/// What was found in one channel, as rows of the table.
-struct Finding {
-    what: &'static str,
-    ranges: Vec<Range<usize>>,
+/// What was found in one channel.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Finding {
+    /// `Joint 1 (`shoulder`): the position`.
+    pub subject: String,
+    pub what: &'static str,
+    /// Rows of the series, ascending and disjoint.
+    pub ranges: Vec<Range<usize>>,
 }
 
-/// Finds and bridges the bad samples of all joints; the rows they touch, ascending and disjoint.
+type Search = fn(&[f64]) -> Vec<Range<usize>>;
+
+/// Finds and bridges the bad samples of all joints.
 pub(super) fn bridge(
-    table: &Table,
     joints: &[Joint],
     q: &mut [Vec<f64>],
     tau: Option<&mut [Vec<f64>]>,
-    warnings: &mut Vec<String>,
-) -> Vec<Range<usize>> {
-    let mut rows = Vec::new();
+) -> Vec<Finding> {
+    let mut all = Vec::new();
     let mut channel = |quantity: &str, joint: usize, series: &mut [f64], stuck: bool| {
-        let mut findings = vec![Finding {
-            what: "no number",
-            ranges: no_numbers(series),
-        }];
-        join(series, &findings[0].ranges);
-        findings.push(Finding {
-            what: "a spike",
-            ranges: spikes(series),
-        });
-        join(series, &findings[1].ranges);
-        if stuck {
-            findings.push(Finding {
-                what: "stuck",
-                ranges: stuck_runs(series),
+        let name = joints.get(joint).map_or("", |joint| joint.name.as_ref());
+        let subject = format!("Joint {} (`{name}`): the {quantity}", joint + 1);
+        let kinds: [(_, Search); 3] = [
+            ("no number", no_numbers),
+            ("a spike", spikes),
+            ("stuck", stuck_runs),
+        ];
+        for (what, find) in kinds.into_iter().take(if stuck { 3 } else { 2 }) {
+            let ranges = find(series);
+            join(series, &ranges);
+            all.push(Finding {
+                subject: subject.clone(),
+                what,
+                ranges,
             });
-            join(series, &findings[2].ranges);
-        }
-        for finding in findings
-            .into_iter()
-            .filter(|finding| !finding.ranges.is_empty())
-        {
-            let name = joints.get(joint).map_or("", |joint| joint.name.as_ref());
-            warnings.push(sentence(
-                table,
-                &format!("Joint {} (`{name}`)", joint + 1),
-                quantity,
-                &finding,
-            ));
-            rows.extend(finding.ranges);
         }
     };
     for (joint, series) in q.iter_mut().enumerate() {
@@ -81,10 +70,26 @@ pub(super) fn bridge(
     for (joint, series) in tau.into_iter().flatten().enumerate() {
         channel("torque", joint, series, false);
     }
+    all
+}
+
+/// The rows that any finding touches, ascending and disjoint; each finding becomes a sentence.
+pub(super) fn report(
+    first_row: usize,
+    findings: Vec<Finding>,
+    warnings: &mut Vec<String>,
+) -> Vec<Range<usize>> {
+    let mut rows = Vec::new();
+    for finding in findings {
+        if !finding.ranges.is_empty() {
+            warnings.push(sentence(first_row, &finding));
+            rows.extend(finding.ranges);
+        }
+    }
     united(rows)
 }
 
-fn sentence(table: &Table, joint: &str, quantity: &str, finding: &Finding) -> String {
+fn sentence(first_row: usize, finding: &Finding) -> String {
     const LISTED: usize = 3;
     let count: usize = finding.ranges.iter().map(Range::len).sum();
     let places: Vec<String> = finding
@@ -92,11 +97,11 @@ fn sentence(table: &Table, joint: &str, quantity: &str, finding: &Finding) -> St
         .iter()
         .take(LISTED)
         .map(|range| match range.len() {
-            1 => (table.first_row + range.start).to_string(),
+            1 => (first_row + range.start).to_string(),
             _ => format!(
                 "{} to {}",
-                table.first_row + range.start,
-                table.first_row + range.end - 1
+                first_row + range.start,
+                first_row + range.end - 1
             ),
         })
         .collect();
@@ -106,8 +111,9 @@ fn sentence(table: &Table, joint: &str, quantity: &str, finding: &Finding) -> St
         ""
     };
     format!(
-        "{joint}: the {quantity} is {} in {count} row{} ({}{more}); bridged by straight lines; \
+        "{} is {} in {count} row{} ({}{more}); bridged by straight lines; \
          equations near long bridges are left out.",
+        finding.subject,
         finding.what,
         if count == 1 { "" } else { "s" },
         places.join(", ")
@@ -212,7 +218,7 @@ fn join(series: &mut [f64], ranges: &[Range<usize>]) {
 }
 
 /// Ascending disjoint ranges over the same places.
-fn united(mut ranges: Vec<Range<usize>>) -> Vec<Range<usize>> {
+pub(super) fn united(mut ranges: Vec<Range<usize>>) -> Vec<Range<usize>> {
     ranges.sort_by_key(|range| range.start);
     let mut all: Vec<Range<usize>> = Vec::new();
     for range in ranges {

@@ -90,6 +90,12 @@ pub enum Problem {
         /// Why.
         reason: String,
     },
+    /// A long log's numbers cannot be kept on disk.
+    #[error(
+        "its numbers cannot be kept in a temporary file: {0}; free space in the directory for \
+         temporary files, or name another one (TMPDIR, on Windows TEMP)"
+    )]
+    Spool(#[source] io::Error),
     /// No content at all.
     #[error("is empty; expected a header line such as `t,q1,tau1` and one line per sample")]
     Empty,

@@ -10,10 +10,7 @@ const DIGIT: u32 = 16;
 ///
 /// Selection by the digits of a key, the highest first: each walk counts the values that share the
 /// digits found so far by their next digit.
-pub(super) fn select(
-    rank: usize,
-    walk: impl Fn(&mut dyn FnMut(f64)) -> Found<()>,
-) -> Found<f64> {
+pub(super) fn select(rank: usize, walk: impl Fn(&mut dyn FnMut(f64)) -> Found<()>) -> Found<f64> {
     let (mut found, mut rank) = (0_u64, rank as u64);
     let mut counts = vec![0_u64; 1 << DIGIT];
     for shift in [48, 32, 16, 0] {
@@ -42,11 +39,19 @@ pub(super) fn select(
 /// An integer that sorts as the value does.
 fn key(value: f64) -> u64 {
     let bits = value.to_bits();
-    if bits >> 63 == 0 { bits | 1 << 63 } else { !bits }
+    if bits >> 63 == 0 {
+        bits | 1 << 63
+    } else {
+        !bits
+    }
 }
 
 fn value(key: u64) -> f64 {
-    f64::from_bits(if key >> 63 == 1 { key & !(1 << 63) } else { !key })
+    f64::from_bits(if key >> 63 == 1 {
+        key & !(1 << 63)
+    } else {
+        !key
+    })
 }
 
 #[cfg(test)]

@@ -196,7 +196,9 @@ fn spaces(text: &[u8]) -> usize {
 /// A field without blanks and quotes around it, and whether it had quotes.
 pub(super) fn unquoted(field: &[u8]) -> (&[u8], bool) {
     let field = field.trim_ascii();
-    let inner = field.strip_prefix(b"\"").and_then(|f| f.strip_suffix(b"\""));
+    let inner = field
+        .strip_prefix(b"\"")
+        .and_then(|f| f.strip_suffix(b"\""));
     inner.map_or((field, false), |inner| (inner.trim_ascii(), true))
 }
 

@@ -13,7 +13,7 @@ use super::error::{Found, LogError, Problem};
 use super::grid::{Grid, Stamped};
 use super::lookup::{Channel, Lookup};
 use super::recording::Recording;
-use super::source;
+use super::source::{self, Source};
 use super::spec::LogSpec;
 use super::table::{self, Table};
 use crate::model::Joint;
@@ -60,9 +60,51 @@ pub fn read(
         file: file.clone(),
         problem,
     };
+    let Opened {
+        source,
+        mut companion,
+        layout,
+        mut warnings,
+    } = open(spec, joints, drives, options)?;
+    let table = table::read(source, &layout, spec.part, &mut warnings).map_err(in_log)?;
+    check_finite(&table, &layout.channels, 0..1).map_err(in_log)?;
+    let grid = grid(&table, spec, &companion, &mut warnings).map_err(in_log)?;
+    let mut rows = Rows::of(table, &layout, drives, options, &mut warnings).map_err(in_log)?;
+    let findings = doubt::bridge(joints, &mut rows.q, rows.tau.as_deref_mut());
+    let doubtful = doubt::report(rows.table.first_row, findings, &mut warnings);
+    rows.motion()
+        .check(joints, companion.encoder_resolution, &mut warnings);
+    if let (None, Some(q_ref)) = (&companion.reference, rows.q_ref.take()) {
+        companion.reference = Some(Reference::Sampled {
+            q: grid.apply(rows.table.stamps(), q_ref),
+        });
+    }
+    Ok((rows.recording(spec, &grid, &doubtful, warnings), companion))
+}
+
+/// A log whose columns are known, and none of its rows.
+pub(super) struct Opened {
+    pub source: Source,
+    pub companion: Companion,
+    pub layout: Layout,
+    pub warnings: Vec<String>,
+}
+
+/// Opens a log and finds its columns, with the help of its companion.
+pub(super) fn open(
+    spec: &LogSpec,
+    joints: &[Joint],
+    drives: &Drives,
+    options: &ReadOptions,
+) -> Result<Opened, LogError> {
+    let file = spec.path.display().to_string();
+    let in_log = |problem| LogError::Log {
+        file: file.clone(),
+        problem,
+    };
     columns::check_drives(drives, joints.len()).map_err(in_log)?;
     let source = source::open(&spec.path).map_err(in_log)?;
-    let mut companion = companion(spec, options)?;
+    let companion = companion(spec, options)?;
     companion.check_joints(joints.len())?;
     let mut warnings = Vec::new();
     let lookup = Lookup {
@@ -74,25 +116,12 @@ pub fn read(
         require_torque: options.require_torque,
     };
     let layout = lookup.layout(&mut warnings)?;
-    let table = table::read(source, &layout, spec.part, &mut warnings).map_err(in_log)?;
-    check_finite(&table, &layout.channels, 0..1).map_err(in_log)?;
-    let grid = grid(&table, spec, &companion, &mut warnings).map_err(in_log)?;
-    let mut rows = Rows::of(table, &layout, drives, options, &mut warnings).map_err(in_log)?;
-    let doubtful = doubt::bridge(
-        &rows.table,
-        joints,
-        &mut rows.q,
-        rows.tau.as_deref_mut(),
-        &mut warnings,
-    );
-    rows.motion()
-        .check(joints, companion.encoder_resolution, &mut warnings);
-    if let (None, Some(q_ref)) = (&companion.reference, rows.q_ref.take()) {
-        companion.reference = Some(Reference::Sampled {
-            q: grid.apply(rows.table.stamps(), q_ref),
-        });
-    }
-    Ok((rows.recording(spec, &grid, &doubtful, warnings), companion))
+    Ok(Opened {
+        source,
+        companion,
+        layout,
+        warnings,
+    })
 }
 
 fn grid(
@@ -122,17 +151,17 @@ fn companion(spec: &LogSpec, options: &ReadOptions) -> Result<Companion, LogErro
 }
 
 /// The rows of the part, one series per joint.
-struct Rows {
+pub(super) struct Rows {
     /// Only the stamps are left in it.
-    table: Table,
-    q: Vec<Vec<f64>>,
-    qd: Option<Vec<Vec<f64>>>,
-    tau: Option<Vec<Vec<f64>>>,
+    pub table: Table,
+    pub q: Vec<Vec<f64>>,
+    pub qd: Option<Vec<Vec<f64>>>,
+    pub tau: Option<Vec<Vec<f64>>>,
     q_ref: Option<Vec<Vec<f64>>>,
 }
 
 impl Rows {
-    fn of(
+    pub fn of(
         mut table: Table,
         layout: &Layout,
         drives: &Drives,
@@ -195,7 +224,7 @@ impl Rows {
         }
     }
 
-    fn motion(&self) -> Motion<'_> {
+    pub fn motion(&self) -> Motion<'_> {
         Motion {
             table: &self.table,
             q: &self.q,
@@ -215,33 +244,62 @@ fn take(table: &mut Table, group: &Group) -> Vec<Vec<f64>> {
 }
 
 /// Whether all values of these channels are finite.
-fn check_finite(table: &Table, channels: &[Channel], group: std::ops::Range<usize>) -> Found<()> {
-    const LISTED: usize = 3;
+fn check_finite(table: &Table, channels: &[Channel], group: Range<usize>) -> Found<()> {
     for place in group {
         let (Some(values), Some(channel)) = (table.columns.get(place), channels.get(place)) else {
             continue;
         };
-        let bad = || {
-            values
-                .iter()
-                .enumerate()
-                .filter(|(_, value)| !value.is_finite())
-        };
-        let count = bad().count();
-        // A few can be bridged; in the time there is nothing to bridge from.
-        let bearable = if place == 0 { 0.0 } else { doubt::BEARABLE };
-        if count as f64 > bearable * values.len() as f64 {
-            let rows = bad()
-                .take(LISTED)
-                .map(|(k, _)| (table.first_row + k).to_string());
-            let more = if count > LISTED { ", ..." } else { "" };
-            let rows = format!("{}{more}", rows.collect::<Vec<_>>().join(", "));
-            return Err(Problem::NotFinite {
-                column: channel.name.clone(),
-                count,
-                rows,
-            });
-        }
+        let mut bad = NotFinite::default();
+        bad.count(table.first_row, values);
+        bad.bearable(place, values.len(), channel)?;
     }
     Ok(())
+}
+
+/// The values of a channel that are no finite numbers.
+#[derive(Clone, Debug, Default)]
+pub(super) struct NotFinite {
+    pub count: usize,
+    /// The first data rows.
+    rows: Vec<usize>,
+}
+
+impl NotFinite {
+    /// Rows listed, and one more that shows that there are more.
+    const LISTED: usize = 3;
+
+    /// Counts those among values that begin at a data row.
+    pub fn count(&mut self, first_row: usize, values: &[f64]) {
+        for (k, _) in values.iter().enumerate().filter(|(_, v)| !v.is_finite()) {
+            self.count += 1;
+            if self.rows.len() < Self::LISTED {
+                self.rows.push(first_row + k);
+            }
+        }
+    }
+
+    /// Moves the rows, counted from the first, to a data row where they begin.
+    pub fn begin_at(&mut self, first_row: usize) {
+        self.rows.iter_mut().for_each(|row| *row += first_row);
+    }
+
+    /// Whether so few of `len` values can be borne in the channel at `place` of the layout.
+    pub fn bearable(&self, place: usize, len: usize, channel: &Channel) -> Found<()> {
+        // A few can be bridged; in the time there is nothing to bridge from.
+        let bearable = if place == 0 { 0.0 } else { doubt::BEARABLE };
+        if self.count as f64 <= bearable * len as f64 {
+            return Ok(());
+        }
+        let rows: Vec<String> = self.rows.iter().map(usize::to_string).collect();
+        let more = if self.count > Self::LISTED {
+            ", ..."
+        } else {
+            ""
+        };
+        Err(Problem::NotFinite {
+            column: channel.name.clone(),
+            count: self.count,
+            rows: format!("{}{more}", rows.join(", ")),
+        })
+    }
 }

@@ -124,7 +124,11 @@ fn names(line: &str, separator: u8) -> Found<Vec<String>> {
         .map(|field| {
             let (name, quoted) = unquoted(line.as_bytes().get(field).unwrap_or_default());
             let name = String::from_utf8_lossy(name);
-            if quoted { name.replace("\"\"", "\"") } else { name.into_owned() }
+            if quoted {
+                name.replace("\"\"", "\"")
+            } else {
+                name.into_owned()
+            }
         })
         .collect();
     if names

@@ -61,7 +61,8 @@ impl Stamps for Kept<'_> {
     fn each(&self, see: &mut dyn FnMut(&[f64])) -> Found<()> {
         let (mut k, mut dropped) = (0, self.dropped);
         self.stamps.each(&mut |stamps| {
-            let (here, later) = dropped.split_at(dropped.partition_point(|d| *d < k + stamps.len()));
+            let (here, later) =
+                dropped.split_at(dropped.partition_point(|d| *d < k + stamps.len()));
             let mut from = 0;
             for place in here {
                 see(stamps.get(from..place - k).unwrap_or_default());
@@ -79,10 +80,7 @@ impl Stamps for Kept<'_> {
 }
 
 /// Shows the place of the earlier stamp, that stamp and the step to the next one.
-pub(super) fn each_step(
-    stamps: &dyn Stamps,
-    see: &mut dyn FnMut(usize, f64, f64),
-) -> Found<()> {
+pub(super) fn each_step(stamps: &dyn Stamps, see: &mut dyn FnMut(usize, f64, f64)) -> Found<()> {
     let (mut k, mut before) = (0, f64::NAN);
     stamps.each(&mut |stamps| {
         for &stamp in stamps {
@@ -105,7 +103,8 @@ mod tests {
         let stamps = all.as_slice();
         let kept = Kept::new(&stamps, &[1, 2, 7]);
         let mut found = Vec::new();
-        kept.each(&mut |stamps| found.extend_from_slice(stamps)).unwrap();
+        kept.each(&mut |stamps| found.extend_from_slice(stamps))
+            .unwrap();
         assert_eq!(found, [0.0, 3.0, 4.0, 5.0, 6.0, 8.0, 9.0]);
         assert_eq!((kept.ends().len, kept.ends().last), (7, 9.0));
         let mut steps = Vec::new();

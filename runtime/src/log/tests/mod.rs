@@ -14,7 +14,7 @@ use super::*;
 use crate::model::{Joint, JointKind};
 use crate::settings::Drives;
 
-fn joints() -> Vec<Joint> {
+pub(super) fn joints() -> Vec<Joint> {
     ["shoulder", "elbow"]
         .map(|name| Joint {
             name: name.into(),
@@ -24,12 +24,12 @@ fn joints() -> Vec<Joint> {
 }
 
 /// A log file that lives as long as the test.
-struct File {
+pub(super) struct File {
     _dir: tempfile::TempDir,
-    path: PathBuf,
+    pub path: PathBuf,
 }
 
-fn file(name: &str, bytes: impl AsRef<[u8]>) -> File {
+pub(super) fn file(name: &str, bytes: impl AsRef<[u8]>) -> File {
     let dir = tempfile::tempdir().unwrap();
     let path = dir.path().join(name);
     std::fs::write(&path, bytes).unwrap();

@@ -1,0 +1,273 @@
+//! From the rows as the file has them to joint positions and torques that can be believed, segment
+//! by segment.
+//!
+//! Segments overlap, so that each sample is judged with its surroundings; a finding on the border
+//! of two is one finding.
+
+use std::ops::Range;
+
+use rayon::iter::{IntoParallelIterator, ParallelIterator};
+
+use super::super::checks::Motion;
+use super::super::columns::Layout;
+use super::super::doubt::{self, Finding};
+use super::super::error::Found;
+use super::super::read::{self, ReadOptions};
+use super::super::table::Table;
+use super::Robot;
+use super::spooling::Rows;
+
+/// Rows of a segment.
+const SEGMENT: usize = 1 << 15;
+
+/// Rows on either side of a segment that are looked at with it.
+const MARGIN: usize = 1 << 12;
+
+/// More segments than this at a time would only cost memory.
+const MOST_AT_ONCE: usize = 4;
+
+/// What the segments together say.
+#[derive(Default)]
+pub(super) struct Settled {
+    /// Rows that cannot be believed, ascending and disjoint.
+    pub doubtful: Vec<Range<usize>>,
+    /// Smallest and largest position of each joint.
+    pub range: Vec<(f64, f64)>,
+}
+
+/// Brings all rows to the joint side of the drives, bridges what cannot be believed, and checks
+/// what remains; the spool then holds the result.
+pub(super) fn settle(
+    rows: &Rows,
+    layout: &Layout,
+    robot: Robot<'_>,
+    encoder_resolution: Option<f64>,
+    warnings: &mut Vec<String>,
+) -> Found<Settled> {
+    let starts: Vec<usize> = (0..rows.spool.rows).step_by(SEGMENT).collect();
+    let at_once = rayon::current_num_threads().clamp(1, MOST_AT_ONCE);
+    let mut whole = Whole::default();
+    // Values are replaced only when the next segments, which overlap, have been read.
+    let mut settled: Vec<Segment> = Vec::new();
+    for starts in starts.chunks(at_once) {
+        let read = |&start: &usize| Segment::read(rows, start, layout);
+        let segments: Vec<Segment> = starts.iter().map(read).collect::<Found<_>>()?;
+        settled
+            .iter()
+            .try_for_each(|segment| segment.write(rows, layout))?;
+        let settle = |segment: Segment| segment.settle(layout, robot);
+        settled = segments.into_par_iter().map(settle).collect::<Found<_>>()?;
+        for segment in &mut settled {
+            whole.take(segment);
+        }
+    }
+    settled
+        .iter()
+        .try_for_each(|segment| segment.write(rows, layout))?;
+    Ok(whole.report(rows.first_row, robot, encoder_resolution, warnings))
+}
+
+/// Some rows and their surroundings.
+struct Segment {
+    /// The rows that are settled here, counted from the first one read.
+    core: Range<usize>,
+    /// The first row read.
+    first: usize,
+    table: Table,
+    q: Vec<Vec<f64>>,
+    qd: Option<Vec<Vec<f64>>>,
+    tau: Option<Vec<Vec<f64>>>,
+    findings: Vec<Finding>,
+    changed: bool,
+}
+
+impl Segment {
+    fn read(rows: &Rows, start: usize, layout: &Layout) -> Found<Segment> {
+        let first = start.saturating_sub(MARGIN);
+        let end = (start + SEGMENT).min(rows.spool.rows);
+        let last = (end + MARGIN).min(rows.spool.rows);
+        let column = |channel| rows.spool.read(channel, first..last);
+        let columns = (0..layout.channels.len()).map(column);
+        Ok(Segment {
+            core: start - first..end - first,
+            first,
+            table: Table {
+                first_row: rows.first_row + first,
+                columns: columns.collect::<Found<_>>()?,
+            },
+            q: Vec::new(),
+            qd: None,
+            tau: None,
+            findings: Vec::new(),
+            changed: false,
+        })
+    }
+
+    fn settle(self, layout: &Layout, robot: Robot<'_>) -> Found<Segment> {
+        // Missing values were counted over the whole log.
+        let options = ReadOptions {
+            require_torque: false,
+            ..ReadOptions::default()
+        };
+        let mut rows = read::Rows::of(self.table, layout, robot.drives, &options, &mut Vec::new())?;
+        let all = doubt::bridge(robot.joints, &mut rows.q, rows.tau.as_deref_mut());
+        let findings: Vec<Finding> = all
+            .into_iter()
+            .map(|finding| within(finding, self.first, &self.core))
+            .collect();
+        let motor = layout.q.motor || layout.tau.as_ref().is_some_and(|tau| tau.motor);
+        Ok(Segment {
+            table: rows.table,
+            q: rows.q,
+            qd: rows.qd,
+            tau: rows.tau,
+            changed: motor || findings.iter().any(|finding| !finding.ranges.is_empty()),
+            findings,
+            ..self
+        })
+    }
+
+    /// Replaces the rows in the spool, if they changed.
+    fn write(&self, rows: &Rows, layout: &Layout) -> Found<()> {
+        if !self.changed {
+            return Ok(());
+        }
+        let tau = layout.tau.iter().flat_map(|tau| tau.channels.clone());
+        let channels = layout.q.channels.clone().chain(tau);
+        let series = self.q.iter().chain(self.tau.iter().flatten());
+        for (channel, values) in channels.zip(series) {
+            let core = values.get(self.core.clone()).unwrap_or_default();
+            rows.spool
+                .write(channel, self.first + self.core.start, core)?;
+        }
+        Ok(())
+    }
+}
+
+/// A finding in the core of a segment, in rows of the log.
+fn within(finding: Finding, first: usize, core: &Range<usize>) -> Finding {
+    let inside = |range: Range<usize>| {
+        let (start, end) = (range.start.max(core.start), range.end.min(core.end));
+        (start < end).then(|| first + start..first + end)
+    };
+    Finding {
+        ranges: finding.ranges.into_iter().filter_map(inside).collect(),
+        ..finding
+    }
+}
+
+/// What is known of all segments so far.
+#[derive(Default)]
+struct Whole {
+    findings: Vec<Finding>,
+    q: Vec<(f64, f64)>,
+    tau: Vec<(f64, f64)>,
+    /// The segment with the most motion, and how much that is.
+    liveliest: Option<(f64, Lively)>,
+}
+
+/// A segment without its surroundings.
+struct Lively {
+    table: Table,
+    q: Vec<Vec<f64>>,
+    qd: Option<Vec<Vec<f64>>>,
+    tau: Option<Vec<Vec<f64>>>,
+}
+
+impl Whole {
+    fn take(&mut self, segment: &mut Segment) {
+        let found = std::mem::take(&mut segment.findings);
+        if self.findings.is_empty() {
+            self.findings = found;
+        } else {
+            for (all, found) in self.findings.iter_mut().zip(found) {
+                all.ranges.extend(found.ranges);
+            }
+        }
+        let core = |series: &Vec<f64>| -> Vec<f64> {
+            series
+                .get(segment.core.clone())
+                .unwrap_or_default()
+                .to_vec()
+        };
+        let cores = |series: &[Vec<f64>]| series.iter().map(core).collect::<Vec<_>>();
+        let q = cores(&segment.q);
+        let motion: f64 = q
+            .iter()
+            .map(|q| extent(q))
+            .map(|(low, high)| high - low)
+            .sum();
+        let tau = segment.tau.as_deref().map(cores);
+        widen(&mut self.q, &q);
+        widen(&mut self.tau, tau.as_deref().unwrap_or_default());
+        if self
+            .liveliest
+            .as_ref()
+            .is_none_or(|(most, _)| motion > *most)
+        {
+            let table = Table {
+                first_row: segment.table.first_row + segment.core.start,
+                columns: vec![core(&segment.table.stamps().to_vec())],
+            };
+            let qd = segment.qd.as_deref().map(cores);
+            self.liveliest = Some((motion, Lively { table, q, qd, tau }));
+        }
+    }
+
+    /// Says what was found; units and limits are judged where the robot moves most.
+    fn report(
+        self,
+        first_row: usize,
+        robot: Robot<'_>,
+        encoder_resolution: Option<f64>,
+        warnings: &mut Vec<String>,
+    ) -> Settled {
+        let united = |finding: Finding| Finding {
+            ranges: doubt::united(finding.ranges),
+            ..finding
+        };
+        let findings = self.findings.into_iter().map(united).collect();
+        let doubtful = doubt::report(first_row, findings, warnings);
+        if let Some((_, mut lively)) = self.liveliest {
+            // Behind the rows of one segment, the extremes of all.
+            extend(&mut lively.q, &self.q);
+            extend(lively.tau.as_deref_mut().unwrap_or_default(), &self.tau);
+            let motion = Motion {
+                table: &lively.table,
+                q: &lively.q,
+                qd: lively.qd.as_deref(),
+                tau: lively.tau.as_deref(),
+            };
+            motion.check(robot.joints, encoder_resolution, warnings);
+        }
+        Settled {
+            doubtful,
+            range: self.q,
+        }
+    }
+}
+
+fn extent(values: &[f64]) -> (f64, f64) {
+    let low = values.iter().copied().fold(f64::INFINITY, f64::min);
+    (
+        low,
+        values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+    )
+}
+
+fn widen(ranges: &mut Vec<(f64, f64)>, series: &[Vec<f64>]) {
+    ranges.resize(
+        series.len().max(ranges.len()),
+        (f64::INFINITY, f64::NEG_INFINITY),
+    );
+    for (range, series) in ranges.iter_mut().zip(series) {
+        let (low, high) = extent(series);
+        *range = (range.0.min(low), range.1.max(high));
+    }
+}
+
+fn extend(series: &mut [Vec<f64>], ranges: &[(f64, f64)]) {
+    for (series, (low, high)) in series.iter_mut().zip(ranges) {
+        series.extend([low, high]);
+    }
+}
