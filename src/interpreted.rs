@@ -6,8 +6,10 @@ use idim_codegen::derive::ParameterKind;
 use idim_codegen::describe::{EdgesSpec, FreedomSpec, VelocitySpec, WeightsSpec};
 use idim_codegen::emit::tables::{Signals, signals};
 use idim_codegen::expr::tape::{Batch, Tape};
+use idim_codegen::knowledge;
 use idim_codegen::mechanism;
 use idim_codegen::robot::{self, Robot};
+use idim_runtime::knowledge::{Knowledge, Term};
 use idim_runtime::model::{
     Column, ColumnKind, Entry, IdentificationModel, Joint, JointKind, Output, Pattern, States,
 };
@@ -27,6 +29,7 @@ pub struct Interpreter {
     joints: Vec<Joint>,
     columns: Vec<Column>,
     settings: Settings,
+    knowledge: Knowledge,
     outputs: [Compiled; 5],
 }
 
@@ -39,6 +42,7 @@ impl Interpreter {
             joints: robot.mechanism.joints.iter().map(joint).collect(),
             columns: robot.base.parameters.iter().map(column).collect(),
             settings: settings(robot),
+            knowledge: knowledge(robot),
             outputs: robot::Output::ALL.map(compiled),
         }
     }
@@ -70,6 +74,9 @@ impl IdentificationModel for Interpreter {
     }
     fn settings(&self) -> &Settings {
         &self.settings
+    }
+    fn knowledge(&self) -> &Knowledge {
+        &self.knowledge
     }
     fn evaluate(&self, output: Output, states: &States<'_>, signals: &mut [f64]) {
         let States { len, q, qd, qdd } = *states;
@@ -154,5 +161,21 @@ fn settings(robot: &Robot) -> Settings {
             gains: Cow::Owned(drives.gains.clone()),
             coupling: Cow::Owned(drives.coupling.clone()),
         },
+    }
+}
+
+fn knowledge(robot: &Robot) -> Knowledge {
+    let known = knowledge::Knowledge::of(robot);
+    let term = |term: &knowledge::Term| Term {
+        column: term.column,
+        link: term.link,
+        parameter: term.parameter,
+        factor: term.factor,
+    };
+    Knowledge {
+        nominal: Cow::Owned(known.nominal),
+        rigid: Cow::Owned(known.rigid),
+        terms: known.terms.iter().map(term).collect(),
+        prior: Cow::Owned(known.prior.concat()),
     }
 }

@@ -215,6 +215,7 @@ fn identities_cover_every_built_in_robot() {
 /// Same joints, columns, settings, patterns, and the same signals to the bit on random states:
 /// both are readers of one graph and group every operation alike.
 fn assert_same(a: &dyn IdentificationModel, b: &dyn IdentificationModel) {
+    assert_eq!(a.knowledge(), b.knowledge());
     assert_eq!(a.name(), b.name());
     assert_eq!(a.joints(), b.joints());
     assert_eq!(a.columns(), b.columns());

@@ -10,6 +10,7 @@ mod error;
 mod observed;
 mod options;
 mod predict;
+mod prior;
 mod score;
 mod series;
 #[cfg(test)]
@@ -17,7 +18,7 @@ pub(crate) mod tests;
 mod warnings;
 
 pub use error::IdentifyError;
-pub use options::{Options, Plan};
+pub use options::{Options, Plan, PriorUse};
 pub use predict::predict;
 pub use series::series;
 
@@ -76,6 +77,11 @@ pub fn identify(
         let sigmas = corrected::corrected(model, together.of(kind)?, plan.weights);
         for (parameter, sigma) in found.parameters.iter_mut().zip(sigmas) {
             parameter.sigma_corrected = sigma.filter(|_| parameter.value.is_some());
+        }
+        if options.prior == PriorUse::Use {
+            let observed = (&together, checked.as_slice());
+            prior::add(model, (kind, plan.weights), &estimate, observed, &mut found)?;
+            warnings.extend(warnings::of_prior(&found));
         }
         models.push(found);
     }
@@ -144,10 +150,14 @@ fn result(
             .columns()
             .iter()
             .enumerate()
-            .map(|(k, column)| parameter(column, k, estimate))
+            .map(|(k, column)| ParameterResult {
+                nominal: model.knowledge().value(k),
+                ..parameter(column, k, estimate)
+            })
             .collect(),
         fit: score::torque(model, train.torque(kind)?, x),
         validation,
+        with_prior: None,
     })
 }
 
@@ -168,5 +178,7 @@ fn parameter(column: &Column, k: usize, estimate: &Estimate) -> ParameterResult 
             .map(|(value, sigma)| 100.0 * sigma / value.abs()),
         relation: column.relation.to_string(),
         solution: estimate.solution[k],
+        nominal: None,
+        with_prior: None,
     }
 }

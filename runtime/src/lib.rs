@@ -10,6 +10,7 @@ pub mod batch;
 pub mod estimate;
 pub mod evidence;
 pub mod identify;
+pub mod knowledge;
 pub mod lane;
 pub mod log;
 pub mod model;

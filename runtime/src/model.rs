@@ -8,6 +8,7 @@ use std::borrow::Cow;
 
 use serde::Serialize;
 
+use crate::knowledge::Knowledge;
 use crate::settings::Settings;
 
 /// Version of the contract between emitted code and this crate; emitted code refuses to compile
@@ -147,6 +148,11 @@ pub trait IdentificationModel: Send + Sync {
     /// The robot's own defaults for identification, and its drives.
     fn settings(&self) -> &Settings;
 
+    /// What the description knows of the parameters; nothing, unless the model says otherwise.
+    fn knowledge(&self) -> &Knowledge {
+        const { &Knowledge::NONE }
+    }
+
     /// Evaluates every distinct signal of an output on a chunk of states.
     ///
     /// `signals` has `pattern(output).signals * states.len` places; signal `s` at sample `i` goes
@@ -169,6 +175,9 @@ impl<T: IdentificationModel + ?Sized> IdentificationModel for &T {
     }
     fn settings(&self) -> &Settings {
         (**self).settings()
+    }
+    fn knowledge(&self) -> &Knowledge {
+        (**self).knowledge()
     }
     fn evaluate(&self, output: Output, states: &States<'_>, signals: &mut [f64]) {
         (**self).evaluate(output, states, signals);

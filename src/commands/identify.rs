@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
-use idim::runtime::identify::{Options, identify, predict, series};
+use idim::runtime::identify::{Options, PriorUse, identify, predict, series};
 use idim::runtime::log::{self, LogSpec, ReadOptions, Recording};
 use idim::runtime::model::IdentificationModel;
 use idim::runtime::observe::ModelKind;
@@ -77,6 +77,9 @@ pub struct Choices {
     /// Pass the torque through the prefilter too.
     #[arg(long)]
     prefilter_torque: bool,
+    /// Tolerances of the description ([prior]): an estimate with them beside the classical one.
+    #[arg(long, value_enum, default_value = "use")]
+    prior: Prior,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -84,6 +87,13 @@ enum Model {
     Explicit,
     Implicit,
     Power,
+}
+
+#[derive(Clone, Copy, Debug, Default, ValueEnum)]
+enum Prior {
+    #[default]
+    Use,
+    Ignore,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -140,6 +150,10 @@ impl Choices {
                 Source::Measured => Velocity::Measured,
             }),
             prefilter_torque: self.prefilter_torque.then_some(true),
+            prior: match self.prior {
+                Prior::Use => PriorUse::Use,
+                Prior::Ignore => PriorUse::Ignore,
+            },
         }
     }
 }

@@ -83,6 +83,7 @@ fn imports() -> TokenStream {
         use std::borrow::Cow;
 
         use ::idim_runtime::batch::Block;
+        use ::idim_runtime::knowledge::{Knowledge, Term};
         use ::idim_runtime::lane::Lane;
         use ::idim_runtime::model::{
             Column, ColumnKind, Entry, IdentificationModel, Joint, JointKind, Output, Pattern,
@@ -158,11 +159,8 @@ fn table_name(output: Output) -> &'static str {
 }
 
 fn statics(robot: &Robot) -> TokenStream {
-    let (joints, columns, settings) = (
-        tables::joints(robot),
-        tables::columns(robot),
-        tables::settings(robot),
-    );
+    let (joints, columns) = (tables::joints(robot), tables::columns(robot));
+    let (settings, knowledge) = (tables::settings(robot), tables::knowledge(robot));
     let mut patterns = TokenStream::new();
     for output in Output::ALL {
         let signals = tables::signals(robot, output);
@@ -184,6 +182,13 @@ fn statics(robot: &Robot) -> TokenStream {
 
         #[doc = " The robot's own defaults for identification."]
         pub static SETTINGS: settings::Settings = #settings;
+
+        const fn term(column: usize, link: usize, parameter: usize, factor: f64) -> Term {
+            Term { column, link, parameter, factor }
+        }
+
+        #[doc = " What the description knows of the parameters."]
+        pub static KNOWLEDGE: Knowledge = #knowledge;
 
         const fn entry(row: usize, column: usize, signal: usize) -> Entry {
             Entry { row, column, signal }
@@ -222,6 +227,9 @@ fn model(robot: &Robot) -> TokenStream {
             }
             fn settings(&self) -> &settings::Settings {
                 &SETTINGS
+            }
+            fn knowledge(&self) -> &Knowledge {
+                &KNOWLEDGE
             }
             fn evaluate(&self, output: Output, states: &States<'_>, signals: &mut [f64]) {
                 let zero = <Block as Lane>::splat(0.0);

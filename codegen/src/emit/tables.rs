@@ -8,6 +8,7 @@ use quote::quote;
 use crate::derive::ParameterKind;
 use crate::describe::{EdgesSpec, FreedomSpec, VelocitySpec, WeightsSpec};
 use crate::expr::Expr;
+use crate::knowledge::Knowledge;
 use crate::mechanism::JointKind;
 use crate::robot::{Output, Robot};
 
@@ -153,6 +154,28 @@ pub fn settings(robot: &Robot) -> TokenStream {
                 gains: Cow::Borrowed(&[#(#gains),*]),
                 coupling: Cow::Borrowed(&[#(#coupling),*]),
             },
+        }
+    }
+}
+
+/// `Knowledge { .. }`.
+pub fn knowledge(robot: &Robot) -> TokenStream {
+    let known = Knowledge::of(robot);
+    let nominal = known.nominal.iter().map(|value| option(value.map(signed)));
+    let rigid = known.rigid.iter().copied().map(signed);
+    let prior = known.prior.iter().flatten().copied().map(signed);
+    let terms = known.terms.iter().map(|term| {
+        let [column, link, parameter] =
+            [term.column, term.link, term.parameter].map(Literal::usize_unsuffixed);
+        let factor = signed(term.factor);
+        quote! { term(#column, #link, #parameter, #factor) }
+    });
+    quote! {
+        Knowledge {
+            nominal: Cow::Borrowed(&[#(#nominal),*]),
+            rigid: Cow::Borrowed(&[#(#rigid),*]),
+            terms: Cow::Borrowed(&[#(#terms),*]),
+            prior: Cow::Borrowed(&[#(#prior),*]),
         }
     }
 }

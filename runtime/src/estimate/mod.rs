@@ -27,6 +27,7 @@ pub use entries::Entries;
 pub use identifiable::Dependency;
 pub use least_squares::{Estimate, estimate};
 pub use refine::{Refined, refine, refined};
+pub use robust::row_factors;
 pub use triangle::Triangle;
 
 /// Why parameters cannot be estimated.

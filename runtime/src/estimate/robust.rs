@@ -67,6 +67,13 @@ fn reweighted(
     Ok((estimate, row_factors))
 }
 
+/// Factors of the rows of a block for the residuals of `parameters` and the block's scale, as the
+/// last round has them.
+pub fn row_factors(block: &Equations, parameters: &[f64], scale: f64) -> Vec<f64> {
+    let residuals = block.residual(parameters).into_iter();
+    residuals.map(|rho| row_factor(rho / scale)).collect()
+}
+
 /// Square root of Huber's weight of a residual in standard deviations.
 fn row_factor(rho: f64) -> f64 {
     (TUNING / rho.abs().max(TUNING)).sqrt()

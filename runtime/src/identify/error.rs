@@ -1,6 +1,7 @@
 //! Why an identification cannot be done.
 
 use crate::estimate::EstimateError;
+use crate::evidence::EvidenceError;
 use crate::observe::{ModelKind, ObserveError};
 
 /// Why an identification or a prediction cannot be done.
@@ -36,6 +37,14 @@ pub enum IdentifyError {
         /// Why.
         source: EstimateError,
     },
+    /// The equations and the prior together cannot be solved.
+    #[error("the {} model with the description's [prior]: {message}", model.name())]
+    Prior {
+        /// Which model.
+        model: ModelKind,
+        /// Why.
+        message: String,
+    },
     /// A wrong number of parameters for a prediction.
     #[error("{has} parameters were given and the robot {robot} has {needs}")]
     Parameters {
@@ -46,4 +55,12 @@ pub enum IdentifyError {
         /// Parameters of the model.
         needs: usize,
     },
+}
+
+impl IdentifyError {
+    /// Evidence that cannot be joined with a prior.
+    pub(super) fn prior(model: ModelKind, source: EvidenceError) -> Self {
+        let message = source.to_string();
+        IdentifyError::Prior { model, message }
+    }
 }

@@ -30,6 +30,18 @@ pub struct Options {
     pub prefilter_torque: Option<bool>,
     /// Weights of the equations.
     pub weights: Option<Weights>,
+    /// What to do with the tolerances of the description.
+    pub prior: PriorUse,
+}
+
+/// What to do with prior knowledge.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum PriorUse {
+    /// An estimate with it beside the classical one, where the description has tolerances.
+    #[default]
+    Use,
+    /// Only the classical estimate.
+    Ignore,
 }
 
 /// An identification with every choice made.

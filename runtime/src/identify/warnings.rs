@@ -10,6 +10,10 @@ use crate::report::ModelResult;
 /// The power model is said to fail when its torque error exceeds the explicit one's this often.
 const POWER_FAILS: f64 = 2.0;
 
+/// A prior this many standard deviations from the log on average (root mean square) is
+/// contradicted.
+const CONTRADICTED: f64 = 3.0;
+
 /// A named list longer than this is cut short.
 const LONGEST_LIST: usize = 12;
 
@@ -98,6 +102,34 @@ fn dependency(model: &dyn IdentificationModel, kind: ModelKind, group: &Dependen
     )
 }
 
+/// What prior knowledge fills in, and a prior that the log contradicts.
+pub(super) fn of_prior(found: &ModelResult) -> Vec<String> {
+    let Some(with_prior) = &found.with_prior else {
+        return Vec::new();
+    };
+    let mut warnings = Vec::new();
+    let filled = found.parameters.iter();
+    let filled = filled.filter(|p| p.with_prior.as_ref().is_some_and(|value| value.filled));
+    let filled: Vec<&str> = filled.map(|p| p.name.as_str()).collect();
+    if !filled.is_empty() {
+        warnings.push(format!(
+            "With the description's [prior], {} hold what the description says, as far as the log \
+             leaves them open ({} model).",
+            listed(filled),
+            found.name.name()
+        ));
+    }
+    if with_prior.misfit > CONTRADICTED {
+        warnings.push(format!(
+            "The log contradicts the description's [prior]: they are {:.1} standard deviations apart \
+             on average ({} model). Check the tolerances, or whether the model misses an effect.",
+            with_prior.misfit,
+            found.name.name()
+        ));
+    }
+    warnings
+}
+
 /// A power model that explains the power and not the torques.
 pub(super) fn of_results(models: &[ModelResult]) -> Option<String> {
     let find = |kind| models.iter().find(|model| model.name == kind);
@@ -131,7 +163,10 @@ fn joint_name(model: &dyn IdentificationModel, joint: usize) -> String {
 
 fn names(model: &dyn IdentificationModel, columns: &[usize]) -> String {
     let all = columns.iter().filter_map(|c| model.columns().get(*c));
-    let mut list: Vec<&str> = all.map(|column| column.name.as_ref()).collect();
+    listed(all.map(|column| column.name.as_ref()).collect())
+}
+
+fn listed(mut list: Vec<&str>) -> String {
     let more = list.len().saturating_sub(LONGEST_LIST);
     list.truncate(LONGEST_LIST);
     match more {

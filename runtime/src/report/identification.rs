@@ -73,6 +73,9 @@ pub struct ModelResult {
     pub fit: Fit,
     /// Torque error on each validation log.
     pub validation: Vec<Validation>,
+    /// What the log and the description's tolerances say together, beside the classical estimate.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub with_prior: Option<WithPrior>,
 }
 
 /// One identified parameter.
@@ -99,6 +102,44 @@ pub struct ParameterResult {
     /// The value used for prediction: `value`, or one of many equivalent values where the data
     /// do not determine it.
     pub solution: f64,
+    /// Value in the description, if there is one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub nominal: Option<f64>,
+    /// Estimate with the description's tolerances as knowledge, if there are any.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub with_prior: Option<PriorValue>,
+}
+
+/// A parameter by the log and the description's tolerances together.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PriorValue {
+    /// Mean; `None` if neither determines it.
+    pub value: Option<f64>,
+    /// Standard deviation given both.
+    pub sigma: Option<f64>,
+    /// Standard deviation by the tolerances alone; `None` if they leave it open.
+    pub sigma_before: Option<f64>,
+    /// Whether the log alone leaves it open, so that the tolerances fill it in.
+    pub filled: bool,
+}
+
+/// An estimate with prior knowledge as a whole.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct WithPrior {
+    /// How many of the parameters, as a real number, the prior decides rather than the log.
+    pub from_prior: f64,
+    /// How far log and prior are apart, in standard deviations of their difference (root mean
+    /// square): about 1 if they agree.
+    pub misfit: f64,
+    /// Factor by which errors are taken to be wider than independent ones, because filtered
+    /// residuals are correlated.
+    pub inflation: f64,
+    /// The parameters for prediction, in the order of the robot's columns.
+    pub solution: Vec<f64>,
+    /// Torque error on the training logs.
+    pub fit: Fit,
+    /// Torque error on each validation log.
+    pub validation: Vec<Validation>,
 }
 
 /// Torque error on one or several logs. For the power model, torque is predicted by the explicit

@@ -5,6 +5,7 @@
 
 mod html;
 mod identification;
+mod prior;
 mod series;
 mod table;
 mod terminal;
@@ -12,7 +13,8 @@ mod thin;
 
 pub use html::html;
 pub use identification::{
-    Fit, Identification, JointFit, ModelResult, ParameterResult, Truth, Validation,
+    Fit, Identification, JointFit, ModelResult, ParameterResult, PriorValue, Truth, Validation,
+    WithPrior,
 };
 pub use series::{JointSeries, LogSeries, ModelSeries, Role, Spectrum};
 pub use terminal::terminal;

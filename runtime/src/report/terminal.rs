@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use super::prior;
 use super::table::{Align, Table, optional, shorten, significant};
 use super::{Fit, Identification, ModelResult, ParameterResult};
 use crate::settings::{Edges, Velocity, Weights};
@@ -15,6 +16,7 @@ pub fn terminal(identification: &Identification) -> String {
     let mut text = heading(identification);
     text.push('\n');
     text.push_str(&parameters(identification).render(WIDTH));
+    text.push_str(&prior::tables(&identification.models, WIDTH));
     text.push('\n');
     text.push_str(&equations(&identification.models).render(WIDTH));
     text.push('\n');
@@ -219,7 +221,11 @@ fn section(table: &mut Table, title: &str, fits: &[&Fit]) {
 }
 
 /// A table with a title column and `cells` right-aligned columns per model, under their names.
-fn side_by_side(models: &[ModelResult], cells: usize, title: &str) -> Table {
+pub(super) fn side_by_side<'a>(
+    models: impl IntoIterator<Item = &'a ModelResult>,
+    cells: usize,
+    title: &str,
+) -> Table {
     let mut align = vec![Align::Left];
     let mut names = vec![title.to_owned()];
     for model in models {

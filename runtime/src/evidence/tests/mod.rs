@@ -4,6 +4,7 @@ mod answers;
 mod coverage;
 mod essential;
 mod file;
+mod posterior;
 mod refused;
 mod speed;
 mod spread;

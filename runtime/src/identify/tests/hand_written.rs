@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 
+use crate::knowledge::Knowledge;
 use crate::model::{
     Column, ColumnKind, Entry, IdentificationModel, Joint, JointKind, Output, Pattern, States,
 };
@@ -23,6 +24,7 @@ pub struct HandWritten {
     columns: Vec<Column>,
     outputs: [(Pattern, Vec<Formula>); 5],
     pub settings: Settings,
+    pub knowledge: Knowledge,
 }
 
 impl HandWritten {
@@ -41,6 +43,7 @@ impl HandWritten {
             columns: columns.iter().map(column).collect(),
             outputs: outputs.map(output),
             settings: Settings::default(),
+            knowledge: Knowledge::NONE,
         }
     }
 
@@ -67,6 +70,7 @@ impl HandWritten {
             columns: order.iter().map(|k| self.columns[*k].clone()).collect(),
             outputs: std::array::from_fn(|k| permute(&self.outputs[k])),
             settings: self.settings.clone(),
+            knowledge: self.knowledge.clone(),
         }
     }
 }
@@ -120,6 +124,10 @@ impl IdentificationModel for HandWritten {
 
     fn settings(&self) -> &Settings {
         &self.settings
+    }
+
+    fn knowledge(&self) -> &Knowledge {
+        &self.knowledge
     }
 
     fn evaluate(&self, output: Output, states: &States<'_>, signals: &mut [f64]) {

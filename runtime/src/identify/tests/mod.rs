@@ -4,6 +4,7 @@ mod emps;
 mod failures;
 pub(crate) mod hand_written;
 mod options;
+mod prior;
 mod properties;
 mod reading;
 mod report;

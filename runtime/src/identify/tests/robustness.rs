@@ -70,6 +70,7 @@ prop_compose! {
             edges: matlab.then_some(Edges::Matlab),
             velocity: measured.then_some(Velocity::Measured),
             weights: Some(weights),
+            ..Options::default()
         }
     }
 }
