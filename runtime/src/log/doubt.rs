@@ -136,13 +136,7 @@ fn spikes(series: &[f64]) -> Vec<Range<usize>> {
     if series.len() < 5 {
         return Vec::new();
     }
-    let last = series.len() - 1;
-    let smooth: Vec<f64> = (0..series.len())
-        .map(|i| {
-            let centre = i.clamp(2, last - 2);
-            median(&mut [-2isize, -1, 0, 1, 2].map(|k| series[centre.saturating_add_signed(k)]))
-        })
-        .collect();
+    let smooth = smooth(series);
     let rest: Vec<f64> = series
         .iter()
         .zip(&smooth)
@@ -150,9 +144,14 @@ fn spikes(series: &[f64]) -> Vec<Range<usize>> {
         .collect();
     let low = smooth.iter().copied().fold(f64::INFINITY, f64::min);
     let high = smooth.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let far = SPIKE_OF_RANGE * (high - low);
+    // Most signals need no closer look.
+    if rest.iter().all(|&rest| rest <= far) {
+        return Vec::new();
+    }
     // The mean of the usual deviations, not their median: in a clean signal most are zero.
     let usual = quantile(&rest, 0.99).max(f64::MIN_POSITIVE);
-    let limit = (SPIKE_OF_RANGE * (high - low))
+    let limit = far
         .max(SPIKE_OF_SCATTER * usual)
         .max(SPIKE_OF_RESOLUTION * resolution(series));
     united(
@@ -161,6 +160,21 @@ fn spikes(series: &[f64]) -> Vec<Range<usize>> {
             .map(|i| i..i + 1)
             .collect(),
     )
+}
+
+/// The median of each sample and the two on either side; at an end, of the five that there are.
+fn smooth(series: &[f64]) -> Vec<f64> {
+    let mut smooth = vec![0.0; series.len()];
+    let inner = smooth.iter_mut().skip(2);
+    for (smooth, five) in inner.zip(series.windows(5)) {
+        *smooth = median(five);
+    }
+    let last = smooth.len() - 3;
+    let (first, last) = (smooth[2], smooth[last]);
+    smooth[..2].fill(first);
+    let end = smooth.len() - 2;
+    smooth[end..].fill(last);
+    smooth
 }
 
 /// The smallest step between neighbours that differ.
@@ -174,29 +188,29 @@ fn resolution(series: &[f64]) -> f64 {
 
 /// Runs of one value that end in a jump: the joint moved on while the encoder did not.
 fn stuck_runs(series: &[f64]) -> Vec<Range<usize>> {
-    let steps: Vec<f64> = series
-        .windows(2)
-        .map(|pair| (pair[1] - pair[0]).abs())
-        .collect();
-    let fast = quantile(&steps, 0.95);
-    if fast == 0.0 {
-        return Vec::new();
-    }
     let mut runs = Vec::new();
     let mut start = 0;
     for i in 1..=series.len() {
         if i < series.len() && series[i] == series[start] {
             continue;
         }
-        let jump = series
-            .get(i)
-            .map_or(0.0, |next| (next - series[start]).abs());
-        if i - start >= STUCK_ROWS && jump > STUCK_JUMP * fast {
-            runs.push(start + 1..i);
+        let next = series.get(i);
+        let jump = next.map_or(0.0, |next| (next - series[start]).abs());
+        if i - start >= STUCK_ROWS && jump > 0.0 {
+            runs.push((start + 1..i, jump));
         }
         start = i;
     }
-    runs
+    if runs.is_empty() {
+        return Vec::new();
+    }
+    let steps: Vec<f64> = series
+        .windows(2)
+        .map(|pair| (pair[1] - pair[0]).abs())
+        .collect();
+    let fast = quantile(&steps, 0.95);
+    runs.retain(|(_, jump)| fast > 0.0 && *jump > STUCK_JUMP * fast);
+    runs.into_iter().map(|(run, _)| run).collect()
 }
 
 /// Replaces the values of each range by the straight line between its neighbours; at an end of the
@@ -230,9 +244,15 @@ pub(super) fn united(mut ranges: Vec<Range<usize>>) -> Vec<Range<usize>> {
     all
 }
 
-fn median(values: &mut [f64; 5]) -> f64 {
-    values.sort_by(f64::total_cmp);
-    values[2]
+/// The middle one of five: it lies between the inner values of the two outer pairs, or is the
+/// centre.
+fn median(five: &[f64]) -> f64 {
+    let &[a, b, c, d, e] = five else {
+        return f64::NAN;
+    };
+    let low = a.min(b).max(d.min(e));
+    let high = a.max(b).min(d.max(e));
+    low.min(high).max(low.max(high).min(c))
 }
 
 fn quantile(values: &[f64], fraction: f64) -> f64 {
@@ -262,6 +282,17 @@ mod tests {
         torque[700] *= 100.0;
         torque[1500] = -400.0;
         assert_eq!(spikes(&torque), [700..701, 1500..1501]);
+    }
+
+    #[test]
+    fn median_of_five_in_any_order_is_the_third() {
+        for k in 0..120_usize {
+            let mut left = vec![1.0, 2.0, 3.0, 4.0, 5.0];
+            let order = [k / 24, k / 6 % 4, k / 2 % 3, k % 2, 0];
+            let five = order.map(|place| left.remove(place));
+            assert_eq!(median(&five), 3.0, "{five:?}");
+        }
+        assert_eq!(median(&[2.0, 2.0, 7.0, 7.0, 2.0]), 2.0);
     }
 
     #[test]
