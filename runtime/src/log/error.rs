@@ -82,6 +82,25 @@ pub enum Problem {
     /// A format that this reader does not know.
     #[error("{0} is not read yet; convert it to CSV (or .csv.gz) with columns t, q1.., tau1..")]
     Format(&'static str),
+    /// A format whose reader was not built in.
+    #[error(
+        "{format} needs a build with the feature `{feature}` (cargo install idim --features \
+         {feature}); or convert it to CSV (or .csv.gz) with columns t, q1.., tau1.."
+    )]
+    NotBuiltIn {
+        /// The format.
+        format: &'static str,
+        /// The cargo feature.
+        feature: &'static str,
+    },
+    /// A column of something else than numbers.
+    #[error("column `{column}` holds {holds}, not numbers")]
+    NoNumbers {
+        /// Its name.
+        column: String,
+        /// What it holds, as the format calls it.
+        holds: String,
+    },
     /// Reading failed on the way, as in a truncated gzip file.
     #[error("cannot be read beyond row {rows}: {reason}")]
     Damaged {
@@ -100,7 +119,7 @@ pub enum Problem {
     #[error("is empty; expected a header line such as `t,q1,tau1` and one line per sample")]
     Empty,
     /// Not a text file.
-    #[error("is not a text file ({0}); expected CSV in UTF-8, plain or gzip")]
+    #[error("is not a text file ({0}); expected CSV, plain or gzip")]
     NotText(&'static str),
     /// The first line holds numbers.
     #[error(

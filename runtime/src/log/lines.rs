@@ -1,20 +1,20 @@
 //! Text in stretches of whole lines, so that they can be parsed apart from each other.
 
-use std::io::{self, Read};
+use std::io::{self, BufRead, Read};
 
 /// Bytes of text per stretch: large against a line, small enough to stay in the cache.
 pub(super) const STRETCH: usize = 1 << 17;
 
 /// A reader that ends its stretches behind line feeds.
 pub(super) struct Lines {
-    text: Box<dyn Read + Send>,
+    text: Box<dyn BufRead + Send>,
     /// The beginning of a line that the last stretch left over.
     rest: Vec<u8>,
     ended: bool,
 }
 
 impl Lines {
-    pub(super) fn new(text: Box<dyn Read + Send>) -> Lines {
+    pub(super) fn new(text: Box<dyn BufRead + Send>) -> Lines {
         Lines {
             text,
             rest: Vec::new(),

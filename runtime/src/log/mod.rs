@@ -20,6 +20,8 @@ mod lookup;
 mod naming;
 mod number;
 mod order;
+#[cfg(feature = "parquet")]
+mod parquet;
 mod parse;
 mod rate;
 mod read;
@@ -30,6 +32,7 @@ pub mod spec;
 mod stamps;
 mod table;
 mod unit;
+mod utf16;
 mod write;
 
 #[cfg(test)]

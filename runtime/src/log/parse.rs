@@ -47,6 +47,20 @@ pub(super) struct Parsed {
 }
 
 impl Parsed {
+    /// Rows that were never text: columns of equal length.
+    #[cfg(feature = "parquet")]
+    pub(super) fn of(columns: Vec<Vec<f64>>) -> Parsed {
+        let rows = columns.iter().map(Vec::len).min().unwrap_or(0);
+        let values = columns.iter().flat_map(|column| column.iter().take(rows));
+        Parsed {
+            values: values.copied().collect(),
+            stride: rows,
+            rows,
+            lines: rows as u64,
+            ..Parsed::default()
+        }
+    }
+
     /// The values of a channel, one per row.
     pub(super) fn column(&self, channel: usize) -> &[f64] {
         let start = channel * self.stride;
@@ -101,7 +115,8 @@ impl Parser {
         parsed.clear(ends + unended, self.channels);
         let mut at = 0;
         while let Some(line) = text.get(at..).filter(|line| !line.is_empty()) {
-            if let Some(length) = self.plain(line, parsed) {
+            let comment = matches!(line.first(), Some(b'#' | b'%'));
+            if let Some(length) = self.plain(line, parsed).filter(|_| !comment) {
                 parsed.rows += 1;
                 at += length;
             } else {

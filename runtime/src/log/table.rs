@@ -3,7 +3,7 @@
 //! Text is read, parsed and put together at the same time: while one batch of stretches is parsed
 //! in parallel, the batch before it is put together and the next one is read.
 
-use std::io;
+use std::io::{self, BufRead};
 use std::ops::Range;
 
 use rayon::iter::{IntoParallelRefMutIterator, ParallelIterator};
@@ -12,7 +12,7 @@ use super::columns::Layout;
 use super::error::{Found, Problem};
 use super::lines::Lines;
 use super::parse::{Oddity, Parsed, Parser, unquoted};
-use super::source::Source;
+use super::source::{Content, Source};
 use super::spec::{FIRST_ROW, Part};
 
 /// Fewer rows than this hold no motion that could be filtered.
@@ -87,28 +87,46 @@ pub(super) fn read_into(
     sink: &mut dyn Sink,
     warnings: &mut Vec<String>,
 ) -> Found<usize> {
-    let parser = Parser::new(layout, source.separator, source.header.len());
     let mut progress = Progress::new(&source, layout, part);
-    let mut lines = Lines::new(source.text);
+    match source.content {
+        Content::Text(text) => {
+            let parser = Parser::new(layout, text.separator, source.header.len());
+            read_text(text.lines, &parser, &mut progress, sink)?;
+        }
+        #[cfg(feature = "parquet")]
+        Content::Parquet(content) => content.read(layout, |rows| {
+            progress.merge(&[], rows, sink)?;
+            Ok(!progress.ended)
+        })?,
+    }
+    progress.finish(warnings)?;
+    Ok(progress.first_row)
+}
+
+fn read_text(
+    text: Box<dyn BufRead + Send>,
+    parser: &Parser,
+    progress: &mut Progress,
+    sink: &mut dyn Sink,
+) -> Found<()> {
+    let mut lines = Lines::new(text);
     let (mut done, mut parsing, mut reading) = (Batch::new(), Batch::new(), Batch::new());
     loop {
         let (merged, ()) = rayon::join(
             || {
-                done.merge(&mut progress, sink)?;
+                done.merge(progress, sink)?;
                 reading.fill(&mut lines);
                 Ok(())
             },
-            || parsing.parse(&parser),
+            || parsing.parse(parser),
         );
         merged?;
         if progress.ended || (parsing.is_empty() && reading.is_empty()) {
-            break;
+            return Ok(());
         }
         std::mem::swap(&mut done, &mut parsing);
         std::mem::swap(&mut parsing, &mut reading);
     }
-    progress.finish(warnings)?;
-    Ok(progress.first_row)
 }
 
 /// Stretches that are read, parsed and put together at one go.
@@ -208,7 +226,7 @@ impl Progress {
             part,
             names: layout.channels.iter().map(|c| c.name.clone()).collect(),
             expected: source.header.len(),
-            line: source.header_lines + 1,
+            line: source.first_line,
             rows: 0,
             taken: 0,
             first_row: FIRST_ROW,

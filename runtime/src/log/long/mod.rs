@@ -75,8 +75,15 @@ pub fn is_long(spec: &LogSpec) -> bool {
 fn text_size(spec: &LogSpec) -> Option<u64> {
     let mut file = File::open(&spec.path).ok()?;
     let size = file.metadata().ok().filter(|data| data.is_file())?.len();
-    let mut magic = [0; 2];
-    if file.read_exact(&mut magic).is_err() || magic != [0x1f, 0x8b] {
+    let mut magic = [0; 4];
+    if file.read_exact(&mut magic).is_err() {
+        return Some(size);
+    }
+    #[cfg(feature = "parquet")]
+    if magic == *b"PAR1" {
+        return super::parquet::text_size(file);
+    }
+    if !magic.starts_with(&[0x1f, 0x8b]) {
         return Some(size);
     }
     // The last four bytes say how much the last member holds, modulo 2^32.

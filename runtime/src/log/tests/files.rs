@@ -27,6 +27,18 @@ fn log_in_another_dialect_is_the_same_log() {
             .replace("tau2", "TAU_2"),
         clean().replace('\n', ",\n"),
         clean() + "\n\n  \n",
+        clean().replace("\n0.5", "\n# a remark, with commas\n% another\n\n0.5"),
+        format!(
+            "# t,q1,q2,tau1,tau2\n{}",
+            &clean()["t,q1,q2,tau1,tau2\n".len()..]
+        ),
+        "\"".to_owned() + &clean().replace(',', "\",\"").replace('\n', "\"\n\"") + "\"",
+        "\"".to_owned()
+            + &clean()
+                .replace(',', "\",\"")
+                .replace('.', ",")
+                .replace('\n', "\"\r\n\"")
+            + "\"",
     ] {
         let found = good(&text);
         assert_eq!(
@@ -35,6 +47,32 @@ fn log_in_another_dialect_is_the_same_log() {
             "{text:.60}"
         );
         assert_eq!(found.warnings, Vec::<String>::new());
+    }
+}
+
+#[test]
+fn log_in_another_encoding_is_the_same_log() {
+    let expected = good(&clean()).q;
+    let tabs = clean().replace(',', "\t").replace('.', ",");
+    let utf16 = |order: fn(u16) -> [u8; 2], text: &str| -> Vec<u8> {
+        text.encode_utf16().flat_map(order).collect()
+    };
+    let latin1 = clean()
+        .replacen("tau2", "tau2,\u{fc}", 1)
+        .replace('\n', ",\u{e9}\n");
+    for bytes in [
+        utf16(u16::to_le_bytes, &format!("\u{feff}{tabs}")),
+        utf16(u16::to_be_bytes, &format!("\u{feff}{tabs}")),
+        utf16(u16::to_le_bytes, &tabs.replace('\n', "\r\n")),
+        latin1
+            .replacen(",\u{e9}", "", 1)
+            .chars()
+            .map(|c| c as u8)
+            .collect(),
+    ] {
+        let file = file("log.txt", bytes);
+        let found = read_part(&file, "", &Drives::default(), &ReadOptions::default());
+        assert_eq!(found.unwrap().0.q, expected);
     }
 }
 
@@ -95,7 +133,15 @@ fn file_that_is_no_log_is_an_error_that_says_so() {
         &read("log.csv", b"\x89PNG\r\n\x1a\n\0\0"),
         &["is not a text file"],
     );
-    assert_says(&read("log.parquet", b"PAR1"), &["Parquet is not read yet"]);
+    let parquet = read("log.parquet", b"PAR1");
+    if cfg!(feature = "parquet") {
+        assert_says(&parquet, &["cannot be read"]);
+    } else {
+        assert_says(
+            &parquet,
+            &["Parquet needs a build with the feature `parquet`"],
+        );
+    }
     assert_says(
         &read("log.csv.gz", &[0x1f, 0x8b, 8, 0, 0]),
         &["cannot be read"],
