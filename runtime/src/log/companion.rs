@@ -20,7 +20,8 @@ use super::error::LogError;
 pub struct ColumnSource {
     /// Name in the log's header; absent: the key itself.
     pub from: Option<String>,
-    /// Unit in the log, such as `deg`, `mm`, `ms`, `deg/s`, `mN.m`; absent: SI.
+    /// Unit in the log, such as `deg`, `mm`, `ms`, `deg/s`, `mN.m`; absent: the one in the
+    /// header (`q1 [deg]`), else SI.
     pub unit: Option<String>,
     /// Factor on the value after the unit; absent: 1.
     pub gain: Option<f64>,

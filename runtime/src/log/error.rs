@@ -138,6 +138,14 @@ pub enum Problem {
         /// The nearest name, or nothing.
         hint: String,
     },
+    /// A unit in the header that does not fit.
+    #[error("column `{column}`: {message}; or state the unit under [columns] of the log companion")]
+    HeaderUnit {
+        /// Name in the header.
+        column: String,
+        /// What is wrong with the unit, and which would do.
+        message: String,
+    },
     /// A row with another number of fields than the header.
     #[error("row {row} (line {line}) has {found} fields, the header has {expected}")]
     FieldCount {

@@ -59,7 +59,7 @@ impl Lookup<'_> {
             })?;
             let unit = match &source.unit {
                 Some(unit) => unit_factor(unit, quantity, joint).map_err(error)?,
-                None => 1.0,
+                None => self.header_unit(index, quantity, joint)?,
             };
             let factor = unit * source.gain.unwrap_or(1.0);
             return Ok(Some(Channel {
@@ -68,23 +68,46 @@ impl Lookup<'_> {
                 factor,
             }));
         }
-        Ok(names.iter().find_map(|name| {
-            let index = self.place(name)?;
-            Some(Channel {
+        let found = names.iter().find_map(|name| self.place(name));
+        let channel = |index| {
+            Ok(Channel {
                 index,
-                name: self.header.get(index)?.clone(),
-                factor: 1.0,
+                name: self.header.get(index).cloned().unwrap_or_default(),
+                factor: self.header_unit(index, quantity, joint)?,
             })
-        }))
+        };
+        found.map(channel).transpose()
     }
 
-    /// Where a name stands in the header; capitals count only if nothing else matches.
+    /// Where a name stands in the header, with its unit or without; capitals count only if nothing
+    /// else matches.
     fn place(&self, name: &str) -> Option<usize> {
         let exact = self.header.iter().position(|column| column == name);
-        exact.or_else(|| {
-            self.header
-                .iter()
-                .position(|column| column.eq_ignore_ascii_case(name))
+        let bare = |same: fn(&str, &str) -> bool| {
+            let mut columns = self.header.iter();
+            columns.position(|column| same(unit::split(column).0, name))
+        };
+        exact
+            .or_else(|| bare(|a, b| a == b))
+            .or_else(|| bare(str::eq_ignore_ascii_case))
+    }
+
+    /// The factor of the unit that stands in the header, such as `q1 [deg]`; 1 if none does.
+    fn header_unit(
+        &self,
+        index: usize,
+        quantity: Quantity,
+        joint: Option<(&Joint, bool)>,
+    ) -> Result<f64, LogError> {
+        let column = self.header.get(index).map_or("", String::as_str);
+        let Some(unit) = unit::split(column).1 else {
+            return Ok(1.0);
+        };
+        unit_factor(&unit, quantity, joint).map_err(|message| {
+            self.log(Problem::HeaderUnit {
+                column: column.to_owned(),
+                message,
+            })
         })
     }
 

@@ -1,8 +1,9 @@
 //! From files as people have them to [`Recording`]s: checked, uniform in time, SI units.
 //!
-//! [`read`] follows one path: open ([`LogSpec`], gzip, separator) -> columns and units, with the
-//! help of the [`Companion`] -> rows of the part -> joint side of the drives -> doubtful samples -> checks -> uniform
-//! time grid. [`write()`] and [`onto_stamps`] lead back from results to files.
+//! [`read`] follows one path: open ([`LogSpec`], gzip, encoding, separator) -> columns and units,
+//! with the help of the [`Companion`] -> rows of the part -> joint side of the drives -> doubtful
+//! samples -> checks -> uniform time grid. [`read_long`] does the same to a log too long for
+//! memory. [`write()`] and [`onto_stamps`] lead back from results to files.
 //!
 //! This module owns every file format of measured data; filters and models begin at [`Recording`].
 

@@ -85,6 +85,27 @@ pub(super) fn factor(unit: &str, quantity: Quantity) -> Result<f64, String> {
     }
 }
 
+/// A column's name without its unit, and the unit: `q1` and `deg` for `q1 [deg]`, `q1 (\u{b0})`.
+pub(super) fn split(column: &str) -> (&str, Option<String>) {
+    let unit = |open: char, close: char| {
+        let (name, unit) = column.strip_suffix(close)?.rsplit_once(open)?;
+        let (name, unit) = (name.trim(), unit.trim());
+        (!name.is_empty() && !unit.is_empty()).then_some((name, unit))
+    };
+    let Some((name, unit)) = unit('[', ']').or_else(|| unit('(', ')')) else {
+        return (column, None);
+    };
+    let mut unit = unit
+        .replace('\u{b0}', "deg")
+        .replace(['\u{b5}', '\u{3bc}'], "u")
+        .replace(['\u{b7}', '\u{22c5}', '*'], ".");
+    // A number without a unit.
+    if unit == "-" {
+        unit.clear();
+    }
+    (name, Some(unit).filter(|unit| !unit.is_empty()))
+}
+
 /// Whether a unit of position or velocity turns (`true`) or translates; `None` for other units.
 pub(super) fn is_angular(unit: &str) -> Option<bool> {
     let base = unit.trim_end_matches("/s");
@@ -105,6 +126,22 @@ mod tests {
         assert_eq!(factor("mm", Position), Ok(1e-3));
         assert_eq!(factor("us", Time), Ok(1e-6));
         assert!((factor("rpm", Velocity).unwrap() * 60.0 - std::f64::consts::TAU).abs() < 1e-12);
+    }
+
+    #[test]
+    fn unit_in_a_header_is_split_off() {
+        for (column, name, unit) in [
+            ("q1 [deg]", "q1", Some("deg")),
+            ("q1(\u{b0}/s)", "q1", Some("deg/s")),
+            ("t [\u{b5}s]", "t", Some("us")),
+            ("tau1 [N\u{b7}m]", "tau1", Some("N.m")),
+            ("q1 [-]", "q1", None),
+            ("q1", "q1", None),
+            ("[deg]", "[deg]", None),
+            ("q[1]", "q", Some("1")),
+        ] {
+            assert_eq!(split(column), (name, unit.map(String::from)), "{column}");
+        }
     }
 
     #[test]

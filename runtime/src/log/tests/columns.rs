@@ -130,3 +130,39 @@ fn companion_that_does_not_fit_points_at_the_entry() {
         assert_says(&error.unwrap_err().to_string(), &parts);
     }
 }
+
+#[test]
+fn unit_in_the_header_counts_unless_the_companion_states_another() {
+    let expected = good(&clean());
+    let degrees = |header: &str| {
+        log(|_, fields| {
+            let q: f64 = fields[1].parse().unwrap();
+            fields[1] = format!("{}", q.to_degrees());
+        })
+        .replacen("t,q1,q2,tau1,tau2", header, 1)
+    };
+    for header in [
+        "t [s],q1 [deg],q2 [rad],tau1 [Nm],tau2 (N.m)",
+        "T (s),Q1 (\u{b0}),q2,tau1,tau2",
+    ] {
+        let found = good(&degrees(header));
+        let error = found.q[0]
+            .iter()
+            .zip(&expected.q[0])
+            .map(|(a, b)| (a - b).abs());
+        assert!(error.fold(0.0, f64::max) < 1e-12);
+        assert_eq!((&found.q[1], &found.tau), (&expected.q[1], &expected.tau));
+    }
+    assert_says(
+        &message(&degrees("t,q1 [N.m],q2,tau1,tau2")),
+        &[
+            "column `q1 [N.m]`: unit `N.m` does not fit this column; one of rad",
+            "[columns]",
+        ],
+    );
+    let file = file("log.csv", clean().replacen("q1", "q1 [raw]", 1));
+    let companion = "[columns]\nq1 = { unit = 'rad' }\n";
+    std::fs::write(file.path.with_file_name("log.toml"), companion).unwrap();
+    let found = read_part(&file, "", &Drives::default(), &ReadOptions::default());
+    assert_eq!(found.unwrap().0.q, expected.q);
+}
