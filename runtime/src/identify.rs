@@ -15,12 +15,14 @@ mod score;
 mod series;
 #[cfg(test)]
 pub(crate) mod tests;
+mod units;
 mod warnings;
 
 pub use error::IdentifyError;
 pub use options::{Options, Plan, PriorUse};
 pub use predict::predict;
 pub use series::series;
+pub use units::settle_units;
 
 use crate::estimate::{Estimate, estimate};
 use crate::log::Recording;

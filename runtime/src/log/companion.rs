@@ -11,6 +11,8 @@ use toml::Spanned;
 
 use super::closed_loop::{Controller, RawController, RawReference, Reference};
 use super::error::LogError;
+use super::naming::{Family, Q, QM};
+use crate::model::Joint;
 
 /// Where a column comes from: `q1 = { from = "pos_shoulder", unit = "deg", gain = -1.0 }`.
 ///
@@ -86,7 +88,7 @@ impl Companion {
         })
     }
 
-    fn parse(text: &str) -> Result<Companion, Mistake> {
+    pub(crate) fn parse(text: &str) -> Result<Companion, Mistake> {
         let raw: Raw = toml::from_str(text).map_err(|error| {
             (
                 error.span().unwrap_or_default(),
@@ -127,6 +129,17 @@ impl Companion {
             column,
             message,
         }
+    }
+
+    /// Whether `[columns]` states the unit of a family's column of a joint.
+    pub(super) fn states_unit(&self, family: &Family, joint: usize, joints: &[Joint]) -> bool {
+        let mut names = family.names(joint, joints).into_iter();
+        names.any(|name| self.columns.get(&name).is_some_and(|c| c.unit.is_some()))
+    }
+
+    /// Whether `[columns]` states the unit of a joint's position; `joint` counts from 0.
+    pub(crate) fn states_position(&self, joint: usize, joints: &[Joint]) -> bool {
+        self.states_unit(&Q, joint, joints) || self.states_unit(&QM, joint, joints)
     }
 
     /// Whether reference and controller have as many joints as the robot.

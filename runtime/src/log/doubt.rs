@@ -1,11 +1,13 @@
 //! Samples that cannot be believed: values that are no numbers, spikes, an encoder that stands
 //! still while the joint moves, torque at its limit.
 //!
-//! Each is found, named with its rows, and bridged by a straight line, so that filters have
-//! something finite to run over; what long bridges touch is left out of the equations.
+//! Each is found and named with its rows. All but torque at its limit is bridged by a straight line,
+//! so that filters have something finite to run over; what long bridges touch is left out of the
+//! equations.
 
 use std::ops::Range;
 
+use super::clipped::clipped;
 use crate::model::Joint;
 
 /// More than this fraction of bad values in one channel is no accident: the log is refused.
@@ -32,45 +34,111 @@ const STUCK_JUMP: f64 = 8.0;
 pub(super) struct Finding {
     /// `Joint 1 (`shoulder`): the position`.
     pub subject: String,
-    pub what: &'static str,
+    pub what: What,
     /// Rows of the series, ascending and disjoint.
     pub ranges: Vec<Range<usize>>,
 }
 
-type Search = fn(&[f64]) -> Vec<Range<usize>>;
+/// Why samples cannot be believed.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum What {
+    NoNumber,
+    Spike,
+    Stuck,
+    /// At these limits.
+    Clipped(Vec<f64>),
+}
 
-/// Finds and bridges the bad samples of all joints.
-pub(super) fn bridge(
-    joints: &[Joint],
-    q: &mut [Vec<f64>],
-    tau: Option<&mut [Vec<f64>]>,
-) -> Vec<Finding> {
-    let mut all = Vec::new();
-    let mut channel = |quantity: &str, joint: usize, series: &mut [f64], stuck: bool| {
-        let name = joints.get(joint).map_or("", |joint| joint.name.as_ref());
-        let subject = format!("Joint {} (`{name}`): the {quantity}", joint + 1);
-        let kinds: [(_, Search); 3] = [
-            ("no number", no_numbers),
-            ("a spike", spikes),
-            ("stuck", stuck_runs),
-        ];
-        for (what, find) in kinds.into_iter().take(if stuck { 3 } else { 2 }) {
-            let ranges = find(series);
-            join(series, &ranges);
-            all.push(Finding {
-                subject: subject.clone(),
-                what,
-                ranges,
-            });
+impl Finding {
+    /// Takes in what another part of the log says about the same channel.
+    pub fn append(&mut self, more: Finding) {
+        self.ranges.extend(more.ranges);
+        if let (What::Clipped(levels), What::Clipped(more)) = (&mut self.what, more.what) {
+            levels.extend(more);
+            levels.sort_by(f64::total_cmp);
+            levels.dedup();
         }
-    };
-    for (joint, series) in q.iter_mut().enumerate() {
-        channel("position", joint, series, true);
     }
-    for (joint, series) in tau.into_iter().flatten().enumerate() {
-        channel("torque", joint, series, false);
+
+    fn in_words(&self) -> (String, &'static str) {
+        let bridged = "bridged by straight lines; equations near long bridges are left out";
+        let what = match &self.what {
+            What::NoNumber => "no number",
+            What::Spike => "a spike",
+            What::Stuck => "stuck",
+            What::Clipped(levels) => {
+                let levels: Vec<String> = levels.iter().map(f64::to_string).collect();
+                let what = format!("clipped at {}", levels.join(" and "));
+                return (what, "equations near them are left out");
+            }
+        };
+        (what.to_owned(), bridged)
     }
-    all
+}
+
+/// What was found in all channels of a log, whether there are ranges to it or not: always the same
+/// list for the same channels.
+pub(super) struct Doubts<'a> {
+    pub joints: &'a [Joint],
+    pub findings: Vec<Finding>,
+}
+
+impl Doubts<'_> {
+    /// Finds and bridges the bad samples of all positions.
+    pub fn positions(&mut self, q: &mut [Vec<f64>]) {
+        for (joint, series) in q.iter_mut().enumerate() {
+            self.bridge((joint, "position"), series, (What::NoNumber, no_numbers));
+            self.bridge((joint, "position"), series, (What::Spike, spikes));
+            self.bridge((joint, "position"), series, (What::Stuck, stuck_runs));
+        }
+    }
+
+    /// Finds and bridges the values of all velocities that are no numbers. The velocity of a joint
+    /// at rest jumps whenever another one stops, so that a spike proves nothing.
+    pub fn velocities(&mut self, qd: &mut [Vec<f64>]) {
+        for (joint, series) in qd.iter_mut().enumerate() {
+            self.bridge((joint, "velocity"), series, (What::NoNumber, no_numbers));
+        }
+    }
+
+    /// Finds and bridges the bad samples of all torques, as the drives report them, and finds the
+    /// rows in which they are at their limits while one of the joints moves that `moves_with`
+    /// names.
+    pub fn torques<'q>(
+        &mut self,
+        tau: &mut [Vec<f64>],
+        moves_with: impl Fn(usize) -> Vec<&'q [f64]>,
+    ) {
+        for (joint, series) in tau.iter_mut().enumerate() {
+            self.bridge((joint, "torque"), series, (What::NoNumber, no_numbers));
+            self.bridge((joint, "torque"), series, (What::Spike, spikes));
+            let ranges = clipped(series, &moves_with(joint));
+            let mut levels: Vec<f64> = ranges.iter().map(|range| series[range.start]).collect();
+            levels.sort_by(f64::total_cmp);
+            levels.dedup();
+            self.add((joint, "torque"), What::Clipped(levels), ranges);
+        }
+    }
+
+    fn bridge(
+        &mut self,
+        channel: (usize, &str),
+        series: &mut [f64],
+        (what, find): (What, fn(&[f64]) -> Vec<Range<usize>>),
+    ) {
+        let ranges = find(series);
+        join(series, &ranges);
+        self.add(channel, what, ranges);
+    }
+
+    fn add(&mut self, (joint, quantity): (usize, &str), what: What, ranges: Vec<Range<usize>>) {
+        let name = self.joints.get(joint).map_or("", |joint| &joint.name);
+        self.findings.push(Finding {
+            subject: format!("Joint {} (`{name}`): the {quantity}", joint + 1),
+            what,
+            ranges,
+        });
+    }
 }
 
 /// The rows that any finding touches, ascending and disjoint; each finding becomes a sentence.
@@ -110,13 +178,12 @@ fn sentence(first_row: usize, finding: &Finding) -> String {
     } else {
         ""
     };
+    let (what, done) = finding.in_words();
     format!(
-        "{} is {} in {count} row{} ({}{more}); bridged by straight lines; \
-         equations near long bridges are left out.",
+        "{} is {what} in {count} row{} ({}{more}); {done}.",
         finding.subject,
-        finding.what,
         if count == 1 { "" } else { "s" },
-        places.join(", ")
+        places.join(", "),
     )
 }
 
@@ -178,7 +245,7 @@ fn smooth(series: &[f64]) -> Vec<f64> {
 }
 
 /// The smallest step between neighbours that differ.
-fn resolution(series: &[f64]) -> f64 {
+pub(super) fn resolution(series: &[f64]) -> f64 {
     let steps = series.windows(2).map(|pair| (pair[1] - pair[0]).abs());
     let smallest = steps
         .filter(|&step| step > 0.0)
@@ -255,7 +322,7 @@ fn median(five: &[f64]) -> f64 {
     low.min(high).max(low.max(high).min(c))
 }
 
-fn quantile(values: &[f64], fraction: f64) -> f64 {
+pub(super) fn quantile(values: &[f64], fraction: f64) -> f64 {
     let mut sorted = values.to_vec();
     let place = ((sorted.len().saturating_sub(1)) as f64 * fraction) as usize;
     if sorted.is_empty() {

@@ -8,6 +8,7 @@
 //! This module owns every file format of measured data; filters and models begin at [`Recording`].
 
 mod checks;
+mod clipped;
 pub mod closed_loop;
 mod columns;
 pub mod companion;
@@ -30,6 +31,7 @@ pub mod recording;
 mod resample;
 mod source;
 pub mod spec;
+mod speed;
 mod stamps;
 mod table;
 mod unit;

@@ -7,14 +7,16 @@ use super::checks::Motion;
 use super::closed_loop::Reference;
 use super::columns::{self, Group, Layout};
 use super::companion::Companion;
-use super::doubt;
+use super::doubt::{self, Doubts, Finding};
 use super::drives;
 use super::error::{Found, LogError, Problem};
 use super::grid::{Grid, Stamped};
 use super::lookup::{Channel, Lookup};
+use super::naming::QD;
 use super::recording::Recording;
 use super::source::{self, Source};
 use super::spec::LogSpec;
+use super::speed::Pair;
 use super::table::{self, Table};
 use crate::model::Joint;
 use crate::settings::Drives;
@@ -69,9 +71,11 @@ pub fn read(
     let table = table::read(source, &layout, spec.part, &mut warnings).map_err(in_log)?;
     check_finite(&table, &layout.channels, 0..1).map_err(in_log)?;
     let grid = grid(&table, spec, &companion, &mut warnings).map_err(in_log)?;
-    let mut rows = Rows::of(table, &layout, drives, options, &mut warnings).map_err(in_log)?;
-    let findings = doubt::bridge(joints, &mut rows.q, rows.tau.as_deref_mut());
+    let robot = (joints, drives);
+    let mut rows = Rows::of(table, &layout, robot, options, &mut warnings).map_err(in_log)?;
+    let findings = std::mem::take(&mut rows.findings);
     let doubtful = doubt::report(rows.table.first_row, findings, &mut warnings);
+    rows.settle_speeds(joints, &companion, &mut warnings);
     rows.motion()
         .check(joints, companion.encoder_resolution, &mut warnings);
     if let (None, Some(q_ref)) = (&companion.reference, rows.q_ref.take()) {
@@ -158,13 +162,15 @@ pub(super) struct Rows {
     pub qd: Option<Vec<Vec<f64>>>,
     pub tau: Option<Vec<Vec<f64>>>,
     q_ref: Option<Vec<Vec<f64>>>,
+    /// What cannot be believed of it, and was bridged.
+    pub findings: Vec<Finding>,
 }
 
 impl Rows {
     pub fn of(
         mut table: Table,
         layout: &Layout,
-        drives: &Drives,
+        (joints, drives): (&[Joint], &Drives),
         options: &ReadOptions,
         warnings: &mut Vec<String>,
     ) -> Found<Rows> {
@@ -179,13 +185,28 @@ impl Rows {
             finite.map_err(unused).ok()?;
             Some(take(&mut table, group))
         };
-        let qd = optional(&layout.qd, warnings);
-        let reported = optional(&layout.tau, warnings);
+        let mut qd = optional(&layout.qd, warnings);
+        let mut reported = optional(&layout.tau, warnings);
         let q_ref = optional(&layout.q_ref, warnings);
         let mut q = take(&mut table, &layout.q);
+        // On the side of the drive where they were measured: behind a coupling one bad channel
+        // spoils several joints.
+        let mut doubts = Doubts {
+            joints,
+            findings: Vec::new(),
+        };
+        doubts.positions(&mut q);
+        doubts.velocities(qd.as_deref_mut().unwrap_or_default());
         if layout.q.motor {
             q = drives::joint_positions(drives, q)?;
         }
+        let alone = drives.coupling.is_empty();
+        let moves_with = |joint: usize| match q.get(joint) {
+            Some(q) if alone => vec![q.as_slice()],
+            _ => q.iter().map(Vec::as_slice).collect(),
+        };
+        doubts.torques(reported.as_deref_mut().unwrap_or_default(), moves_with);
+        let findings = doubts.findings;
         let motor = layout.tau.as_ref().is_some_and(|tau| tau.motor);
         let tau = match reported {
             Some(reported) if motor => Some(drives::joint_torques(drives, reported)),
@@ -197,7 +218,30 @@ impl Rows {
             qd,
             tau,
             q_ref,
+            findings,
         })
+    }
+
+    /// Velocities and positions in units that show to be others than SI are put into it.
+    fn settle_speeds(
+        &mut self,
+        joints: &[Joint],
+        companion: &Companion,
+        warnings: &mut Vec<String>,
+    ) {
+        let Some(qd) = &mut self.qd else { return };
+        let pairs = joints.iter().zip(self.q.iter_mut().zip(qd)).enumerate();
+        for (j, (joint, (q, qd))) in pairs {
+            let pair = Pair {
+                name: format!("Joint {} (`{}`)", j + 1, joint.name),
+                kind: joint.kind,
+                q,
+                qd,
+                q_stated: companion.states_position(j, joints),
+                qd_stated: companion.states_unit(&QD, j, joints),
+            };
+            warnings.extend(pair.settle(self.table.stamps()));
+        }
     }
 
     fn recording(
@@ -226,9 +270,7 @@ impl Rows {
 
     pub fn motion(&self) -> Motion<'_> {
         Motion {
-            table: &self.table,
             q: &self.q,
-            qd: self.qd.as_deref(),
             tau: self.tau.as_deref(),
         }
     }

@@ -41,12 +41,6 @@ impl Table {
     pub fn stamps(&self) -> &[f64] {
         self.columns.first().map_or(&[], Vec::as_slice)
     }
-
-    /// Where sample `k` of the part stands: data row and stamp, for messages.
-    pub fn at(&self, k: usize) -> String {
-        let time = self.stamps().get(k).copied().unwrap_or(f64::NAN);
-        at(self.first_row + k, time)
-    }
 }
 
 /// A data row and its stamp, for messages.

@@ -11,5 +11,6 @@ mod report;
 mod robustness;
 mod scara;
 pub(crate) mod synthetic;
+mod units;
 mod weights;
 mod windows;

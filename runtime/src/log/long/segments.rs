@@ -13,6 +13,7 @@ use super::super::columns::Layout;
 use super::super::doubt::{self, Finding};
 use super::super::error::Found;
 use super::super::read::{self, ReadOptions};
+use super::super::speed::Pair;
 use super::super::table::Table;
 use super::Robot;
 use super::spooling::Rows;
@@ -109,10 +110,9 @@ impl Segment {
             require_torque: false,
             ..ReadOptions::default()
         };
-        let mut rows = read::Rows::of(self.table, layout, robot.drives, &options, &mut Vec::new())?;
-        let all = doubt::bridge(robot.joints, &mut rows.q, rows.tau.as_deref_mut());
-        let findings: Vec<Finding> = all
-            .into_iter()
+        let of = (robot.joints, robot.drives);
+        let rows = read::Rows::of(self.table, layout, of, &options, &mut Vec::new())?;
+        let findings: Vec<Finding> = (rows.findings.into_iter())
             .map(|finding| within(finding, self.first, &self.core))
             .collect();
         let motor = layout.q.motor || layout.tau.as_ref().is_some_and(|tau| tau.motor);
@@ -132,13 +132,17 @@ impl Segment {
         if !self.changed {
             return Ok(());
         }
-        let tau = layout.tau.iter().flat_map(|tau| tau.channels.clone());
-        let channels = layout.q.channels.clone().chain(tau);
-        let series = self.q.iter().chain(self.tau.iter().flatten());
-        for (channel, values) in channels.zip(series) {
-            let core = values.get(self.core.clone()).unwrap_or_default();
-            rows.spool
-                .write(channel, self.first + self.core.start, core)?;
+        let groups = [
+            (Some(&layout.q), Some(&self.q)),
+            (layout.qd.as_ref(), self.qd.as_ref()),
+            (layout.tau.as_ref(), self.tau.as_ref()),
+        ];
+        for (group, series) in groups.into_iter().filter_map(|(g, s)| g.zip(s)) {
+            for (channel, values) in group.channels.clone().zip(series) {
+                let core = values.get(self.core.clone()).unwrap_or_default();
+                rows.spool
+                    .write(channel, self.first + self.core.start, core)?;
+            }
         }
         Ok(())
     }
@@ -174,6 +178,26 @@ struct Lively {
     tau: Option<Vec<Vec<f64>>>,
 }
 
+impl Lively {
+    /// Says where velocities do not go with positions. The whole log is not at hand any more, so
+    /// that no unit is settled here.
+    fn compare_speeds(&mut self, robot: Robot<'_>, warnings: &mut Vec<String>) {
+        let Some(qd) = &mut self.qd else { return };
+        let pairs = self.q.iter_mut().zip(qd).zip(robot.joints).enumerate();
+        for (j, ((q, qd), joint)) in pairs {
+            let pair = Pair {
+                name: format!("Joint {} (`{}`)", j + 1, joint.name),
+                kind: joint.kind,
+                q,
+                qd,
+                q_stated: true,
+                qd_stated: true,
+            };
+            warnings.extend(pair.settle(self.table.stamps()));
+        }
+    }
+}
+
 impl Whole {
     fn take(&mut self, segment: &mut Segment) {
         let found = std::mem::take(&mut segment.findings);
@@ -181,7 +205,7 @@ impl Whole {
             self.findings = found;
         } else {
             for (all, found) in self.findings.iter_mut().zip(found) {
-                all.ranges.extend(found.ranges);
+                all.append(found);
             }
         }
         let core = |series: &Vec<f64>| -> Vec<f64> {
@@ -229,13 +253,12 @@ impl Whole {
         let findings = self.findings.into_iter().map(united).collect();
         let doubtful = doubt::report(first_row, findings, warnings);
         if let Some((_, mut lively)) = self.liveliest {
+            lively.compare_speeds(robot, warnings);
             // Behind the rows of one segment, the extremes of all.
             extend(&mut lively.q, &self.q);
             extend(lively.tau.as_deref_mut().unwrap_or_default(), &self.tau);
             let motion = Motion {
-                table: &lively.table,
                 q: &lively.q,
-                qd: lively.qd.as_deref(),
                 tau: lively.tau.as_deref(),
             };
             motion.check(robot.joints, encoder_resolution, warnings);
