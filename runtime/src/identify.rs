@@ -7,6 +7,7 @@
 mod choice;
 mod corrected;
 mod error;
+mod excited;
 mod observed;
 mod options;
 mod predict;
@@ -48,8 +49,9 @@ impl Progress for () {
 /// made from the data and reported.
 ///
 /// # Errors
-/// [`IdentifyError`]: no logs, a log that does not fit the robot or lacks torque, logs too short
-/// for the filters or the number of parameters, settings out of range.
+/// [`IdentifyError`]: no logs, a log that does not fit the robot or lacks torque, logs in
+/// which nothing moves or that determine no parameter at all, logs too short for the filters or the
+/// number of parameters, settings out of range.
 pub fn identify(
     model: &dyn IdentificationModel,
     train: &[Recording],
@@ -69,6 +71,13 @@ pub fn identify(
     for &kind in &plan.models {
         progress.step(&format!("solving the {} model", kind.name()));
         let estimate = solved(model, kind, &together, &plan)?;
+        if !estimate.determined.is_empty() && !estimate.determined.contains(&true) {
+            return Err(IdentifyError::NothingDetermined {
+                model: kind,
+                logs: excited::names(train),
+                seen: excited::seen(train),
+            });
+        }
         warnings.extend(warnings::of_estimate(
             model,
             kind,

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
-use idim::runtime::identify::{Options, PriorUse, identify, predict, series};
+use idim::runtime::identify::{Options, PriorUse, identify, predict, series, settle_units};
 use idim::runtime::log::{self, LogSpec, ReadOptions, Recording};
 use idim::runtime::model::IdentificationModel;
 use idim::runtime::observe::ModelKind;
@@ -12,7 +12,7 @@ use idim::runtime::report::{Identification, Role, html, terminal};
 use idim::runtime::settings::{Edges, Velocity, Weights};
 
 use super::progress::Spinner;
-use super::{Failure, output, robot};
+use super::{Failure, fits, output, robot};
 
 /// Arguments of `idim identify`.
 #[derive(Debug, clap::Args)]
@@ -172,19 +172,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let spinner = Spinner::new(arguments.quiet);
     let model = robot::model(&arguments.robot)?;
-    let train = read(
-        model.as_ref(),
-        &arguments.logs,
-        arguments.map.as_deref(),
-        &spinner,
-    )?;
-    let validate = read(
-        model.as_ref(),
-        &arguments.validate,
-        arguments.map.as_deref(),
-        &spinner,
-    )?;
     let options = arguments.choices.options();
+    let map = arguments.map.as_deref();
+    let read = |logs| read(model.as_ref(), logs, (map, &options), &spinner);
+    let (train, validate) = (read(&arguments.logs)?, read(&arguments.validate)?);
     let mut result = identify(model.as_ref(), &train, &validate, &options, &spinner)?;
     result.command = Some(output::command_line());
     if let Some(folder) = &arguments.predictions {
@@ -230,10 +221,10 @@ pub fn draw(
 fn read(
     model: &dyn IdentificationModel,
     logs: &[String],
-    map: Option<&Path>,
+    (map, options): (Option<&Path>, &Options),
     spinner: &Spinner,
 ) -> Result<Vec<Recording>, Failure> {
-    let options = ReadOptions {
+    let reading = ReadOptions {
         require_torque: true,
         companion: map.map(Path::to_owned),
     };
@@ -242,7 +233,10 @@ fn read(
         spinner.say(&format!("reading {name}"));
         let spec: LogSpec = name.parse()?;
         let drives = &model.settings().drives;
-        let (recording, _) = log::read(&spec, model.joints(), drives, &options)?;
+        let (mut recording, companion) = log::read(&spec, model.joints(), drives, &reading)?;
+        settle_units(model, &mut recording, &companion, options);
+        let off = fits::reference(model, &recording, &companion)?;
+        recording.warnings.extend(off);
         recordings.push(recording);
     }
     Ok(recordings)

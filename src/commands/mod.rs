@@ -5,6 +5,7 @@
 mod demo;
 mod describe;
 mod failure;
+mod fits;
 mod generate;
 mod identify;
 mod output;

@@ -5,6 +5,7 @@ mod show;
 
 use std::path::{Path, PathBuf};
 
+use idim::runtime::identify::{Options as Identification, settle_units};
 use idim::runtime::log::{
     self, Companion, Controller, Feedforward, LogSpec, ReadOptions, Recording, Reference,
 };
@@ -14,7 +15,7 @@ use idim::runtime::simulate::{
 };
 
 use super::progress::Spinner;
-use super::{Failure, output, robot};
+use super::{Failure, fits, output, robot};
 
 /// Sampling rate of a trajectory that says none, Hz.
 const RATE_HZ: f64 = 1000.0;
@@ -66,6 +67,10 @@ pub struct Run {
     open: bool,
     reference: Option<Vec<Vec<f64>>>,
     log: Option<Vec<Vec<f64>>>,
+    /// What is odd about the log, and where it leaves its reference or its controller.
+    warnings: Vec<String>,
+    /// Whether it leaves one of them.
+    misfit: bool,
 }
 
 impl Run {
@@ -159,7 +164,19 @@ impl Setup<'_> {
             companion: self.arguments.map.clone(),
         };
         let drives = &self.model.settings().drives;
-        let (recording, companion) = log::read(&spec, self.model.joints(), drives, &options)?;
+        let (mut recording, companion) = log::read(&spec, self.model.joints(), drives, &options)?;
+        settle_units(
+            self.model,
+            &mut recording,
+            &companion,
+            &Identification::default(),
+        );
+        let off = [
+            fits::reference(self.model, &recording, &companion)?,
+            fits::controller(self.model, &self.rigid, &recording, &companion)?,
+        ];
+        let misfit = off.iter().any(Option::is_some);
+        recording.warnings.extend(off.into_iter().flatten());
         let parameters = (self.values.as_slice(), self.rigid.as_slice());
         let log = (&recording, &companion);
         let result = simulate::like(self.model, parameters, log, &self.options(&companion))?;
@@ -176,13 +193,15 @@ impl Setup<'_> {
             }
             _ => format!("open loop under the torque of {name}"),
         };
-        let Recording { q, .. } = recording;
+        let Recording { q, warnings, .. } = recording;
         Ok(Run {
             result,
             driven,
             open,
             reference,
             log: Some(q),
+            warnings,
+            misfit,
         })
     }
 
@@ -228,6 +247,8 @@ impl Setup<'_> {
             open: false,
             reference: Some(reference),
             log: None,
+            warnings: Vec::new(),
+            misfit: false,
         })
     }
 

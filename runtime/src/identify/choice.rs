@@ -1,6 +1,6 @@
 //! Filters chosen from the data, by the rules of Gautier 1996, section 6.
 
-use super::IdentifyError;
+use super::{IdentifyError, excited};
 use crate::log::Recording;
 use crate::observe::rests;
 use crate::settings::Edges;
@@ -100,12 +100,7 @@ fn motion_band(logs: &[Recording]) -> Result<f64, IdentifyError> {
     logs.iter()
         .filter_map(band)
         .reduce(f64::max)
-        .ok_or_else(|| {
-            let names: Vec<&str> = logs.iter().map(|log| log.name.as_str()).collect();
-            IdentifyError::NothingMoves {
-                logs: names.join(", "),
-            }
-        })
+        .ok_or_else(|| excited::nothing_moves(logs))
 }
 
 /// Cut-off of the prefilter, Hz, to two digits.
@@ -199,7 +194,8 @@ mod tests {
         assert_eq!(
             error,
             Some(IdentifyError::NothingMoves {
-                logs: "log.csv".into()
+                logs: "log.csv".into(),
+                seen: "q1 constant".into(),
             })
         );
         let error = from_logs(&[], 5, Edges::Scipy, (None, None, None)).err();

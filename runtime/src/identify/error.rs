@@ -10,13 +10,29 @@ pub enum IdentifyError {
     /// No log to identify from.
     #[error("there is no log to identify from; give at least one")]
     NoLogs,
-    /// The filters cannot be chosen because nothing moves.
+    /// Nothing is excited: every joint rests, or moves no more than its encoder's last digits.
     #[error(
-        "no joint moves in {logs}, or its motion drowns in noise: there are no dynamics to identify"
+        "no joint moves in {logs}, or its motion drowns in noise ({seen}): there are no dynamics to \
+         identify; record a log in which every joint moves through a good part of its range"
     )]
     NothingMoves {
         /// Names of the logs.
         logs: String,
+        /// How far each joint moves.
+        seen: String,
+    },
+    /// The joints move so little, or so alike, that not one parameter is determined.
+    #[error(
+        "the {} model: not one parameter is determined by {logs} ({seen}); record a log in which \
+         every joint moves through a good part of its range", model.name()
+    )]
+    NothingDetermined {
+        /// Which model.
+        model: ModelKind,
+        /// Names of the logs.
+        logs: String,
+        /// How far each joint moves.
+        seen: String,
     },
     /// A sampling rate that is not a positive number.
     #[error("{log}: the sampling rate {rate_hz} Hz is not a positive number")]

@@ -1,6 +1,6 @@
 //! What the user may choose, and how it becomes a plan.
 
-use super::{IdentifyError, choice};
+use super::{IdentifyError, choice, excited};
 use crate::log::Recording;
 use crate::model::IdentificationModel;
 use crate::observe::{Filtering, ModelKind, check};
@@ -63,8 +63,8 @@ impl Options {
     ///
     /// # Errors
     /// [`IdentifyError::NoLogs`]; [`IdentifyError::Rate`]; [`IdentifyError::Observe`] if a log does
-    /// not fit the robot; [`IdentifyError::NothingMoves`] if a
-    /// cut-off or the decimation ratio would have to be chosen from logs without motion.
+    /// not fit the robot; [`IdentifyError::NothingMoves`] for logs without
+    /// motion.
     pub fn resolve(
         &self,
         model: &dyn IdentificationModel,
@@ -82,6 +82,7 @@ impl Options {
         for log in train {
             check(log, model.joints().len())?;
         }
+        excited::check(train)?;
         let chosen = choice::from_logs(train, model.columns().len(), edges, (fq_hz, nd, trim))?;
         let filtering = Filtering {
             fq_hz: chosen.fq_hz,

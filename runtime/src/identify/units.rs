@@ -30,7 +30,7 @@ const DECISIVE: f64 = 2.0;
 /// warnings, also where the dynamics cannot tell, which is so for a joint whose angle enters nothing
 /// but its own acceleration.
 ///
-/// A log that cannot be identified at all is left as it is; [`super::identify`] says why.
+/// A log without torque, or that cannot be identified at all, is left as it is.
 pub fn settle_units(
     model: &dyn IdentificationModel,
     log: &mut Recording,
@@ -42,7 +42,7 @@ pub fn settle_units(
         .filter(|(joint, _)| !companion.states_position(*joint, joints))
         .filter_map(|(joint, (of, q))| Suspect::of(joint, of.kind, q))
         .collect();
-    if suspects.is_empty() {
+    if suspects.is_empty() || log.tau.is_none() {
         return;
     }
     let trial = Trial {

@@ -84,49 +84,6 @@ pub fn ideal(
     })
 }
 
-/// Where a log leaves another motion on the same grid.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Parting {
-    /// Joint, counted from 0.
-    pub joint: usize,
-    /// First second of the grid's time at which they are apart.
-    pub second: f64,
-    /// How far apart they are at most, rad or m.
-    pub largest: f64,
-}
-
-/// The first joint and second at which two motions are further apart than a fraction of the range
-/// of the first; `None` if they never are. It says whether reference, controller and parameters
-/// fit a log.
-pub fn parting(
-    motion: &[Vec<f64>],
-    other: &[Vec<f64>],
-    grid: &Grid,
-    fraction: f64,
-) -> Option<Parting> {
-    let apart = |(joint, (a, b)): (usize, (&Vec<f64>, &Vec<f64>))| {
-        let high = a.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let low = a.iter().copied().fold(f64::INFINITY, f64::min);
-        let distance = |(a, b): (&f64, &f64)| (a - b).abs();
-        let pairs = || a.iter().zip(b).map(distance);
-        // NaN is apart.
-        let sample = pairs().position(|d| d.is_nan() || d > fraction * (high - low))?;
-        let largest = pairs().fold(0.0, f64::max);
-        Some((
-            sample,
-            Parting {
-                joint,
-                second: grid.time(sample),
-                largest,
-            },
-        ))
-    };
-    let parts = motion.iter().zip(other).enumerate().filter_map(apart);
-    parts
-        .min_by_key(|(sample, part)| (*sample, part.joint))
-        .map(|(_, part)| part)
-}
-
 /// Position and velocity at the first sample of a log: least-squares parabola through its
 /// first samples.
 fn beginning(recording: &Recording) -> State {

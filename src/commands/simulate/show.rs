@@ -7,7 +7,7 @@ use idim::runtime::log;
 use idim::runtime::model::{IdentificationModel, JointKind};
 use idim::runtime::simulate::{Simulation, parting};
 
-use super::super::output;
+use super::super::{fits, output};
 use super::{Failure, Run};
 
 /// Share of a joint's range that a log may be away from its simulation before they are said to part.
@@ -89,30 +89,33 @@ pub fn describe(model: &dyn IdentificationModel, run: &Run) -> String {
         }
         text.push('\n');
     }
-    text + &warning(model, run)
+    let warnings = run.warnings.iter().cloned().chain(apart(model, run));
+    for (k, warning) in warnings.enumerate() {
+        let gap = if k == 0 { "\n" } else { "" };
+        let _ = writeln!(text, "{gap}warning: {warning}");
+    }
+    text
 }
 
 /// Says where a log leaves its simulation.
-fn warning(model: &dyn IdentificationModel, run: &Run) -> String {
-    let Some(log) = &run.log else {
-        return String::new();
+fn apart(model: &dyn IdentificationModel, run: &Run) -> Option<String> {
+    let part = parting(run.log.as_ref()?, &run.result.q, &run.result.grid, APART)?;
+    let (joint, unit, _) = fits::joint(model, &part);
+    let cause = match (run.open, run.misfit) {
+        (true, _) => "The parameters are not those of this log, or it is too long for an open loop",
+        (false, true) => "See above for what does not belong to this log",
+        (false, false) => {
+            "Reference and controller fit this log, so the parameters do not: the model lacks \
+             something, or it is another robot's"
+        }
     };
-    let Some(part) = parting(log, &run.result.q, &run.result.grid, APART) else {
-        return String::new();
-    };
-    let joint = &model.joints()[part.joint].name;
-    format!(
-        "\nwarning: log and simulation part at {:.3} s: joint {joint} is more than {:.0} % of its \
-         range away, up to {:.3e}. Reference, controller or parameters are not those of this log{}.\n",
+    Some(format!(
+        "Log and simulation part at {:.3} s: {joint} is more than {:.0} % of its range away, up to \
+         {:.3} {unit}. {cause}.",
         part.second,
         100.0 * APART,
         part.largest,
-        if run.open {
-            ", or it is too long for an open loop"
-        } else {
-            ""
-        }
-    )
+    ))
 }
 
 fn range(values: &[f64]) -> (f64, f64) {

@@ -97,3 +97,47 @@ fn a_log_of_another_robot_is_an_error() {
         IdentifyError::NoLogs
     );
 }
+
+#[test]
+fn log_in_which_nothing_moves_is_an_error_that_says_what_was_seen() {
+    let mut still = motion("still.csv", 0.0, 3000);
+    // One joint constant; the other flickers by its encoder's last digit.
+    still.q[0].fill(0.7);
+    still.q[1] = (0..3000)
+        .map(|i| 1e-3 * f64::from((i * 7 + i * i * 3) % 3))
+        .collect();
+    still.tau = Some(vec![vec![3.0; 3000]; 2]);
+    for options in [options(), Options::default()] {
+        let error = identify(&scara(), &[still.clone()], &[], &options, &()).unwrap_err();
+        let text = error.to_string();
+        assert!(text.starts_with("no joint moves in still.csv"), "{text}");
+        assert!(
+            text.contains("q1 constant; q2 within 2.0e-3, 2 encoder steps"),
+            "{text}"
+        );
+        assert!(
+            text.contains("every joint moves through a good part"),
+            "{text}"
+        );
+    }
+}
+
+#[test]
+fn noise_of_sensors_is_no_motion() {
+    let mut still = motion("still.csv", 0.0, 3000);
+    let mut state = 1u32;
+    let mut noise = || {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        1e-3 * (f64::from(state) / f64::from(u32::MAX) - 0.5)
+    };
+    still.q = vec![
+        (0..3000).map(|_| noise()).collect(),
+        (0..3000).map(|_| noise()).collect(),
+    ];
+    still.tau = Some(vec![vec![3.0; 3000]; 2]);
+    let error = identify(&scara(), &[still], &[], &options(), &()).unwrap_err();
+    assert!(
+        matches!(error, IdentifyError::NothingMoves { .. }),
+        "{error}"
+    );
+}

@@ -6,4 +6,5 @@ mod energy;
 mod friction;
 mod loops;
 mod model;
+mod parting;
 mod refused;
