@@ -9,10 +9,11 @@
 
 use idim::demo;
 use idim::robots;
-use idim::runtime::identify::{Options, identify};
+use idim::runtime::identify::{Options, identify, settle_units};
 use idim::runtime::log::{self, LogSpec, ReadOptions, Recording};
 use idim::runtime::model::IdentificationModel;
 use idim::runtime::report::ModelResult;
+use idim::runtime::settings::Weights;
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::Rng;
 
@@ -46,9 +47,10 @@ fn read(rows: &[Row]) -> Recording {
     let spec: LogSpec = path.display().to_string().parse().unwrap();
     let model = robots::scara::Model;
     let drives = &model.settings().drives;
-    log::read(&spec, model.joints(), drives, &ReadOptions::default())
-        .unwrap()
-        .0
+    let options = ReadOptions::default();
+    let (mut log, companion) = log::read(&spec, model.joints(), drives, &options).unwrap();
+    settle_units(&model, &mut log, &companion, &Options::default());
+    log
 }
 
 fn explicit(log: Recording) -> ModelResult {
@@ -171,4 +173,83 @@ fn torque_at_its_limit_leaves_its_rows_out() {
             .fold(0.0, f64::max)
     };
     assert!(away(&explicit(believed)) > 10.0);
+}
+
+#[test]
+fn channel_in_degrees_is_named_and_changes_nothing() {
+    let clean = rows();
+    let expected = explicit(read(&clean));
+    for joint in [1, 2] {
+        let mut dirty = clean.clone();
+        for row in &mut dirty {
+            row[joint] = row[joint].to_degrees();
+        }
+        let log = read(&dirty);
+        assert_names(
+            &log,
+            &[&format!("Joint {joint} (`"), "was taken to be in deg:"],
+        );
+        assert_within_three_sigma(&explicit(log), &expected);
+    }
+}
+
+/// Everything at once, in the order in which a machine does it: the joint, the drive, the logger.
+fn dirty(clean: &[Row]) -> Vec<Row> {
+    let mut rows = clean.to_vec();
+    let highest = rows.iter().map(|row| row[3]).fold(0.0, f64::max);
+    let held = rows[1550][2];
+    for (k, row) in rows.iter_mut().enumerate() {
+        row[3] = row[3].clamp(-0.85 * highest, 0.85 * highest);
+        if (1551..1755).contains(&k) {
+            row[2] = held;
+        }
+        row[1] = row[1].to_degrees();
+    }
+    for k in 0..10 {
+        rows[317 + 390 * k][3 + k % 2] *= 100.0;
+    }
+    let mut generator = Pcg64Mcg::new(21);
+    for row in &mut rows {
+        if generator.next_u32().is_multiple_of(100) {
+            row[1 + generator.next_u32() as usize % 4] = f64::NAN;
+        }
+    }
+    rows.retain(|_| !generator.next_u32().is_multiple_of(20));
+    rows
+}
+
+#[test]
+fn everything_at_once_is_named_and_changes_nothing() {
+    let clean = rows();
+    let expected = explicit(read(&clean));
+    let log = read(&dirty(&clean));
+    assert_names(
+        &log,
+        &[
+            "The stamps are irregular",
+            "Joint 1 (`shoulder`): the position is no number",
+            "Joint 2 (`elbow`): the position is no number",
+            "Joint 1 (`shoulder`): the torque is no number",
+            "Joint 2 (`elbow`): the torque is no number",
+            "Joint 1 (`shoulder`): the torque is a spike in 5 rows",
+            "Joint 2 (`elbow`): the torque is a spike in 5 rows",
+            "Joint 2 (`elbow`): the position is stuck in",
+            "Joint 1 (`shoulder`): the torque is clipped at",
+            "Joint 1 (`shoulder`) was taken to be in deg:",
+        ],
+    );
+    for weights in [None, Some(Weights::Joint), Some(Weights::Robust)] {
+        let options = Options {
+            weights,
+            ..Options::default()
+        };
+        let logs = [log.clone()];
+        let result = identify(&robots::scara::Model, &logs, &[], &options, &()).unwrap();
+        for (found, expected) in result.models[0].parameters.iter().zip(&expected.parameters) {
+            let sigma = expected.sigma_corrected.unwrap();
+            let away = (found.value.unwrap() - expected.value.unwrap()).abs() / sigma;
+            println!("{weights:?} {}: {away:.2} corrected sigma", found.name);
+            assert!(away < 3.0, "{weights:?} {}: {away:.1} sigma", found.name);
+        }
+    }
 }

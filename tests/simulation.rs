@@ -399,3 +399,127 @@ fn simulate_command_says_what_is_missing() {
     assert!(code == Some(0) && text.is_empty(), "{text}");
     assert!(csv.starts_with("t,q1,q2,qd1,qd2,tau1,tau2\n0,0,0,") && csv.lines().count() == 1002);
 }
+
+/// The SCARA under a controller, as `idim simulate` makes it, and as a log with another companion.
+struct Controlled {
+    folder: tempfile::TempDir,
+}
+
+const REFERENCE: &str = "[reference]\nkind = 'fourier'\nf0_hz = 0.5\nperiods = 2\n\
+    center = [0.1, -0.2]\nsin = [[0.6, 0.1], [0.5, -0.2]]\ncos = [[0.1, 0.1], [0.3, 0.1]]\n";
+
+const CONTROLLER: &str = "[controller]\nlaw = 'pd'\nkp = [900, 150]\nkd = [110, 12]\n";
+
+impl Controlled {
+    fn new() -> Controlled {
+        let made = Controlled {
+            folder: tempfile::tempdir().unwrap(),
+        };
+        made.write("made.toml", &format!("{REFERENCE}{CONTROLLER}"));
+        let (trajectory, log) = (made.path("made.toml"), made.path("log.csv"));
+        let output = idim(&[
+            "simulate",
+            "scara",
+            "--parameters",
+            "robots/scara.toml",
+            "--trajectory",
+            &trajectory,
+            "--rate",
+            "500",
+            "-o",
+            &log,
+        ]);
+        assert!(output.0, "{}", output.1);
+        made
+    }
+
+    fn path(&self, name: &str) -> String {
+        self.folder.path().join(name).display().to_string()
+    }
+
+    fn write(&self, name: &str, text: &str) {
+        std::fs::write(self.folder.path().join(name), text).unwrap();
+    }
+
+    /// What is said about the log with this companion.
+    fn said(&self, companion: &str) -> String {
+        self.write("log.toml", companion);
+        let (log, again) = (self.path("log.csv"), self.path("again.csv"));
+        let output = idim(&[
+            "simulate",
+            "scara",
+            "--parameters",
+            "robots/scara.toml",
+            "--like",
+            &log,
+            "-o",
+            &again,
+        ]);
+        assert!(output.0, "{}", output.1);
+        output.1
+    }
+}
+
+/// Whether the command succeeded, and all that it said.
+fn idim(arguments: &[&str]) -> (bool, String) {
+    let output = Command::new(env!("CARGO_BIN_EXE_idim"))
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .args(arguments)
+        .output()
+        .unwrap();
+    let text = [output.stdout, output.stderr].concat();
+    (output.status.success(), String::from_utf8(text).unwrap())
+}
+
+#[test]
+fn companion_that_fits_its_log_raises_no_warning() {
+    let said = Controlled::new().said(&format!("{REFERENCE}{CONTROLLER}"));
+    assert!(
+        said.contains("closed loop") && !said.contains("warning"),
+        "{said}"
+    );
+}
+
+#[test]
+fn controller_that_is_not_of_the_log_is_said_with_the_second() {
+    let soft = CONTROLLER
+        .replace("[900, 150]", "[30, 5]")
+        .replace("[110, 12]", "[4, 1]");
+    let said = Controlled::new().said(&format!("{REFERENCE}{soft}"));
+    assert!(
+        said.contains("leaves what the controller gives along this motion at 0."),
+        "{said}"
+    );
+    assert!(
+        said.contains("The controller or the reference is not that of this log"),
+        "{said}"
+    );
+    assert!(
+        said.contains("warning: Log and simulation part at "),
+        "{said}"
+    );
+    assert!(
+        said.contains("See above for what does not belong to this log"),
+        "{said}"
+    );
+}
+
+#[test]
+fn reference_that_is_not_of_the_log_is_said_with_the_second() {
+    let other = REFERENCE.replace("[0.5, -0.2]", "[-0.5, 0.4]");
+    let made = Controlled::new();
+    let said = made.said(&format!("{other}{CONTROLLER}"));
+    assert!(
+        said.contains("joint 2 (`elbow`) leaves its reference at 0."),
+        "{said}"
+    );
+    let (ok, said) = idim(&["identify", "scara", &made.path("log.csv")]);
+    assert!(
+        ok && said.contains("joint 2 (`elbow`) leaves its reference at 0."),
+        "{said}"
+    );
+    assert!(
+        said.contains("The reference is not that of this log"),
+        "{said}"
+    );
+}

@@ -24,10 +24,14 @@ pub(super) fn of_logs(
     validate: &[Recording],
     plan: &Plan,
 ) -> Vec<String> {
-    let mut warnings: Vec<String> = train
-        .iter()
-        .chain(validate)
-        .flat_map(|log| log.warnings.iter().cloned())
+    let alone = train.len() + validate.len() == 1;
+    let named = |log: &Recording, warning: &String| match alone || warning.contains(&log.name) {
+        true => warning.clone(),
+        false => format!("{}: {warning}", log.name),
+    };
+    let all = train.iter().chain(validate);
+    let mut warnings: Vec<String> = all
+        .flat_map(|log| log.warnings.iter().map(move |warning| named(log, warning)))
         .collect();
     let Some(first) = train.first() else {
         return warnings;

@@ -76,6 +76,8 @@ impl Finding {
     }
 }
 
+type Search = fn(&[f64]) -> Vec<Range<usize>>;
+
 /// What was found in all channels of a log, whether there are ranges to it or not: always the same
 /// list for the same channels.
 pub(super) struct Doubts<'a> {
@@ -120,12 +122,7 @@ impl Doubts<'_> {
         }
     }
 
-    fn bridge(
-        &mut self,
-        channel: (usize, &str),
-        series: &mut [f64],
-        (what, find): (What, fn(&[f64]) -> Vec<Range<usize>>),
-    ) {
+    fn bridge(&mut self, channel: (usize, &str), series: &mut [f64], (what, find): (What, Search)) {
         let ranges = find(series);
         join(series, &ranges);
         self.add(channel, what, ranges);

@@ -44,11 +44,10 @@ pub fn parting(
 ) -> Option<Parting> {
     let ranges: Vec<f64> = motion.iter().map(|series| range(series)).collect();
     let least = LEAST_RANGE * ranges.iter().copied().fold(0.0, f64::max);
-    let pairs = motion.iter().zip(other).zip(&ranges).enumerate();
-    let apart = |(joint, ((a, b), range)): (usize, ((&Vec<f64>, &Vec<f64>), &f64))| {
+    let apart = |(joint, (a, b)): (usize, (&Vec<f64>, &Vec<f64>))| {
         let distances = || a.iter().zip(b).map(|(a, b)| (a - b).abs());
         // NaN is apart.
-        let limit = fraction * range.max(least);
+        let limit = fraction * ranges[joint].max(least);
         let sample = distances().position(|d| d.is_nan() || d > limit)?;
         let largest = distances().fold(0.0, f64::max);
         let second = grid.time(sample);
@@ -59,6 +58,7 @@ pub fn parting(
         };
         Some((sample, part))
     };
+    let pairs = motion.iter().zip(other).enumerate();
     pairs
         .filter_map(apart)
         .min_by_key(|(sample, part)| (*sample, part.joint))

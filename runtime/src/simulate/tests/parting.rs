@@ -79,7 +79,7 @@ fn joint_that_stops_leaves_its_reference_at_that_second() {
         "{late} s after"
     );
     // Rows that cannot be believed anyway are not held against the reference.
-    log.doubtful = vec![stop..1001];
+    log.doubtful.push(stop..1001);
     assert_eq!(off_reference(&model, &log, &reference()).unwrap(), None);
 }
 
