@@ -8,8 +8,10 @@ mod choice;
 mod corrected;
 mod error;
 mod excited;
+mod instruments;
 mod observed;
 mod options;
+mod payload;
 mod predict;
 mod prior;
 mod score;
@@ -20,7 +22,9 @@ mod units;
 mod warnings;
 
 pub use error::IdentifyError;
+pub use instruments::instruments;
 pub use options::{Options, Plan, PriorUse};
+pub use payload::payload;
 pub use predict::predict;
 pub use series::series;
 pub use units::settle_units;
@@ -169,6 +173,7 @@ fn result(
         fit: score::torque(model, train.torque(kind)?, x),
         validation,
         with_prior: None,
+        instrumented: None,
     })
 }
 
@@ -191,5 +196,6 @@ fn parameter(column: &Column, k: usize, estimate: &Estimate) -> ParameterResult 
         solution: estimate.solution[k],
         nominal: None,
         with_prior: None,
+        instrumented: None,
     }
 }

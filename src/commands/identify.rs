@@ -4,14 +4,17 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
-use idim::runtime::identify::{Options, PriorUse, identify, predict, series, settle_units};
-use idim::runtime::log::{self, LogSpec, ReadOptions, Recording};
+use idim::runtime::identify::{
+    Options, PriorUse, identify, instruments, payload, predict, series, settle_units,
+};
+use idim::runtime::log::{self, Companion, LogSpec, ReadOptions, Recording};
 use idim::runtime::model::IdentificationModel;
 use idim::runtime::observe::ModelKind;
-use idim::runtime::report::{Identification, Role, html, terminal};
+use idim::runtime::report::{Identification, Role, html, payload_terminal, terminal};
 use idim::runtime::settings::{Edges, Velocity, Weights};
 
 use super::progress::Spinner;
+use super::simulate::parameters;
 use super::{Failure, fits, output, robot};
 
 /// Arguments of `idim identify`.
@@ -30,6 +33,19 @@ pub struct Arguments {
     predictions: Option<PathBuf>,
     #[command(flatten)]
     choices: Choices,
+    /// Instrumental variables beside least squares: unbiased where W is noisy. `simulated` takes
+    /// them from closed-loop simulation, with reference and controller of the log's companion.
+    #[arg(long, value_enum)]
+    instruments: Option<Instruments>,
+    /// Identify a load on the last link instead, relative to the known robot of --nominal or of the
+    /// description; LINK (from 1) for another link.
+    #[arg(long, value_name = "LINK", num_args = 0..=1, default_missing_value = "0",
+          conflicts_with_all = ["validate", "predictions", "html", "instruments"])]
+    payload: Option<usize>,
+    /// Parameters of the robot without load: the JSON of `idim identify --json`, or a TOML with a
+    /// [parameters] table.
+    #[arg(long, value_name = "FILE", requires = "payload")]
+    nominal: Option<PathBuf>,
     /// Log companion, instead of the .toml beside each log.
     #[arg(long, value_name = "FILE")]
     map: Option<PathBuf>,
@@ -94,6 +110,12 @@ enum Prior {
     #[default]
     Use,
     Ignore,
+}
+
+/// Where instruments come from.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Instruments {
+    Simulated,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -175,8 +197,18 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let options = arguments.choices.options();
     let map = arguments.map.as_deref();
     let read = |logs| read(model.as_ref(), logs, (map, &options), &spinner);
-    let (train, validate) = (read(&arguments.logs)?, read(&arguments.validate)?);
+    let train = read(&arguments.logs)?;
+    if let Some(link) = arguments.payload {
+        return load(model.as_ref(), link, &train, arguments, &spinner);
+    }
+    let validate = read(&arguments.validate)?.into_iter();
+    let validate: Vec<Recording> = validate.map(|(log, _)| log).collect();
+    let (train, companions): (Vec<Recording>, Vec<Companion>) = train.into_iter().unzip();
     let mut result = identify(model.as_ref(), &train, &validate, &options, &spinner)?;
+    if let Some(Instruments::Simulated) = arguments.instruments {
+        let logs: Vec<_> = train.iter().cloned().zip(companions).collect();
+        instruments(model.as_ref(), &logs, &validate, &mut result, &spinner)?;
+    }
     result.command = Some(output::command_line());
     if let Some(folder) = &arguments.predictions {
         predictions(model.as_ref(), &validate, &result, folder)?;
@@ -197,6 +229,54 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         return Ok(());
     }
     output::print(&terminal(&result))
+}
+
+/// Identifies a load and reports it.
+fn load(
+    model: &dyn IdentificationModel,
+    link: usize,
+    logs: &[(Recording, Companion)],
+    arguments: &Arguments,
+    spinner: &Spinner,
+) -> Result<(), Failure> {
+    let link = link.checked_sub(1).unwrap_or(model.joints().len() - 1);
+    let nominal = match &arguments.nominal {
+        Some(path) => parameters::read(path, model, &robot::derived(&arguments.robot)?)?,
+        None => described(model)?,
+    };
+    let logs: Vec<Recording> = logs.iter().map(|(log, _)| log.clone()).collect();
+    let options = arguments.choices.options();
+    let found = payload(model, &logs, (&nominal, link), &options, spinner)?;
+    spinner.finish();
+    if let Some(path) = &arguments.json {
+        output::json(path, &found)?;
+    }
+    if arguments.quiet || output::claims_stdout(arguments.json.as_deref()) {
+        return Ok(());
+    }
+    output::print(&payload_terminal(&found))
+}
+
+/// All parameters by the description, if it has them all.
+fn described(model: &dyn IdentificationModel) -> Result<Vec<f64>, Failure> {
+    let known = model.knowledge();
+    let columns = model.columns().iter().enumerate();
+    let missing: Vec<&str> = columns
+        .filter(|(k, _)| known.value(*k).is_none())
+        .map(|(_, column)| column.name.as_ref())
+        .collect();
+    if missing.is_empty() {
+        let values = (0..model.columns().len()).filter_map(|k| known.value(k));
+        return Ok(values.collect());
+    }
+    Err(Failure::Usage {
+        message: format!(
+            "--payload needs the robot without load, and the description says nothing of {}",
+            missing.join(", ")
+        ),
+        help: "identify the robot without load first, with --json FILE, and give --nominal FILE"
+            .into(),
+    })
 }
 
 /// Adds to a result what its page draws of each log.
@@ -223,7 +303,7 @@ fn read(
     logs: &[String],
     (map, options): (Option<&Path>, &Options),
     spinner: &Spinner,
-) -> Result<Vec<Recording>, Failure> {
+) -> Result<Vec<(Recording, Companion)>, Failure> {
     let reading = ReadOptions {
         require_torque: true,
         companion: map.map(Path::to_owned),
@@ -237,7 +317,7 @@ fn read(
         settle_units(model, &mut recording, &companion, options);
         let off = fits::reference(model, &recording, &companion)?;
         recording.warnings.extend(off);
-        recordings.push(recording);
+        recordings.push((recording, companion));
     }
     Ok(recordings)
 }

@@ -1,6 +1,6 @@
 //! `idim simulate`: how a robot with given parameters moves.
 
-mod parameters;
+pub(super) mod parameters;
 mod show;
 
 use std::path::{Path, PathBuf};

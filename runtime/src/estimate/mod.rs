@@ -10,6 +10,7 @@
 mod double;
 mod entries;
 mod identifiable;
+mod instrumental;
 mod least_squares;
 #[cfg(test)]
 mod made;
@@ -25,6 +26,7 @@ mod weights;
 pub use double::Double;
 pub use entries::Entries;
 pub use identifiable::Dependency;
+pub use instrumental::{Instrumental, instrumental, long_run};
 pub use least_squares::{Estimate, estimate};
 pub use refine::{Refined, refine, refined};
 pub use robust::row_factors;

@@ -3,6 +3,7 @@
 use crate::estimate::EstimateError;
 use crate::evidence::EvidenceError;
 use crate::observe::{ModelKind, ObserveError};
+use crate::simulate::SimulateError;
 
 /// Why an identification or a prediction cannot be done.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -60,6 +61,38 @@ pub enum IdentifyError {
         model: ModelKind,
         /// Why.
         message: String,
+    },
+    /// Instruments without a closed loop to simulate.
+    #[error(
+        "{log}: instruments from simulation need the commanded motion and the controller, and its \
+         companion has no {missing}; add them to the .toml beside the log, or give it with --map"
+    )]
+    NoLoop {
+        /// Name of the recording.
+        log: String,
+        /// Which tables are missing.
+        missing: &'static str,
+    },
+    /// A log whose simulation fails.
+    #[error("instruments for {log}: {source}")]
+    Simulate {
+        /// Name of the recording.
+        log: String,
+        /// Why.
+        source: SimulateError,
+    },
+    /// A load on a link that cannot carry one.
+    #[error(
+        "link {link} of {robot} cannot carry a load: the robot has {links} links, and none of the \
+         load's parameters would be felt by a joint"
+    )]
+    NoLink {
+        /// The robot.
+        robot: String,
+        /// Link, counted from 1.
+        link: usize,
+        /// Links there are.
+        links: usize,
     },
     /// A wrong number of parameters for a prediction.
     #[error("{has} parameters were given and the robot {robot} has {needs}")]

@@ -76,6 +76,9 @@ pub struct ModelResult {
     /// What the log and the description's tolerances say together, beside the classical estimate.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub with_prior: Option<WithPrior>,
+    /// What instrumental variables say, if they were asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub instrumented: Option<InstrumentedFit>,
 }
 
 /// One identified parameter.
@@ -108,6 +111,44 @@ pub struct ParameterResult {
     /// Estimate with the description's tolerances as knowledge, if there are any.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub with_prior: Option<PriorValue>,
+    /// Estimate with instrumental variables, if it was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub instrumented: Option<InstrumentedValue>,
+}
+
+/// A parameter by instrumental variables.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct InstrumentedValue {
+    /// Value; `None` if the instruments do not determine it.
+    pub value: Option<f64>,
+    /// Standard deviation for independent errors.
+    pub sigma: Option<f64>,
+    /// Standard deviation that respects the correlation of errors in time and between joints.
+    pub sigma_corrected: Option<f64>,
+    /// Weighted least squares minus this value, with the same weights.
+    pub difference: Option<f64>,
+    /// Probability of a difference this large if least squares were not biased.
+    pub p_value: Option<f64>,
+    /// Whether the difference is significant at 5 % for all parameters together (Holm), and larger
+    /// than the corrected standard deviation.
+    pub biased: bool,
+}
+
+/// An estimate with instrumental variables as a whole.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct InstrumentedFit {
+    /// How often each log was simulated.
+    pub simulations: usize,
+    /// Whether the last simulation changed nothing.
+    pub converged: bool,
+    /// Parameters in which least squares are biased.
+    pub biased: Vec<String>,
+    /// The parameters for prediction, in the order of the robot's columns.
+    pub solution: Vec<f64>,
+    /// Torque error on the training logs.
+    pub fit: Fit,
+    /// Torque error on each validation log.
+    pub validation: Vec<Validation>,
 }
 
 /// A parameter by the log and the description's tolerances together.

@@ -5,6 +5,8 @@
 
 mod html;
 mod identification;
+mod instrumented;
+mod payload;
 mod prior;
 mod series;
 mod table;
@@ -13,9 +15,10 @@ mod thin;
 
 pub use html::html;
 pub use identification::{
-    Fit, Identification, JointFit, ModelResult, ParameterResult, PriorValue, Truth, Validation,
-    WithPrior,
+    Fit, Identification, InstrumentedFit, InstrumentedValue, JointFit, ModelResult,
+    ParameterResult, PriorValue, Truth, Validation, WithPrior,
 };
+pub use payload::{LoadParameter, Payload, Physical, terminal as payload_terminal};
 pub use series::{JointSeries, LogSeries, ModelSeries, Role, Spectrum};
 pub use terminal::terminal;
 pub(crate) use thin::thinned;

@@ -2,9 +2,9 @@
 
 use std::fmt::Write;
 
-use super::prior;
 use super::table::{Align, Table, optional, shorten, significant};
 use super::{Fit, Identification, ModelResult, ParameterResult};
+use super::{instrumented, prior};
 use crate::settings::{Edges, Velocity, Weights};
 
 /// No line but a warning is longer.
@@ -17,6 +17,7 @@ pub fn terminal(identification: &Identification) -> String {
     text.push('\n');
     text.push_str(&parameters(identification).render(WIDTH));
     text.push_str(&prior::tables(&identification.models, WIDTH));
+    text.push_str(&instrumented::tables(&identification.models, WIDTH));
     text.push('\n');
     text.push_str(&equations(&identification.models).render(WIDTH));
     text.push('\n');

@@ -1,0 +1,176 @@
+//! A load on a link: its ten parameters relative to a robot whose own are known.
+
+use super::corrected::corrected;
+use super::{IdentifyError, Observed, Options, Progress, score};
+use crate::estimate::{Estimate, estimate};
+use crate::knowledge::{STANDARD, STANDARD_UNITS};
+use crate::log::Recording;
+use crate::model::{Column, ColumnKind, IdentificationModel, Joint, Output, Pattern, States};
+use crate::observe::{Equations, ModelKind, Observations};
+use crate::report::{LoadParameter, Payload, Physical};
+use crate::settings::Settings;
+
+/// Identifies the ten standard parameters of a load fixed to a link (counted from 0), in the
+/// frame of that link, from `logs` with the load and the np parameters `nominal` of the robot
+/// without it: weighted least squares of \\( Y - W X = W K_l X_{load} \\), where the columns of
+/// \\( K_l \\) are the regrouping relations of the link's own parameters (Khalil, Gautier and
+/// Lemoine, "Identification of the payload inertial parameters of industrial manipulators", 2007).
+///
+/// # Errors
+/// [`IdentifyError::NoLink`] for a link that is not there or whose relations are not known;
+/// [`IdentifyError::Parameters`]; those of [`super::identify`].
+pub fn payload(
+    model: &dyn IdentificationModel,
+    logs: &[Recording],
+    (nominal, link): (&[f64], usize),
+    options: &Options,
+    progress: &dyn Progress,
+) -> Result<Payload, IdentifyError> {
+    let np = model.columns().len();
+    let carried = carried(model, (nominal, link))?;
+    let asked = Options {
+        models: vec![ModelKind::Explicit],
+        ..options.clone()
+    };
+    let plan = asked.resolve(model, logs)?;
+    let observe = |log| Observed::new(model, log, &plan, progress);
+    let observed = Observed::join(logs.iter().map(observe))?;
+    let kind = ModelKind::Explicit;
+    let robot = observed.of(kind)?;
+    let blocks = robot.blocks.iter();
+    let load = Observations {
+        model: kind,
+        blocks: blocks.map(|block| seen(block, nominal, &carried)).collect(),
+    };
+    let found = estimate(&load.blocks, STANDARD.len(), plan.weights).map_err(|source| {
+        IdentifyError::Estimate {
+            model: kind,
+            source,
+        }
+    })?;
+    let sigmas = corrected(&Load::of(model, link), &load, plan.weights);
+    let parameters = parameters(&found, &sigmas);
+    let all: Vec<f64> = (0..np)
+        .map(|k| nominal[k] + along(&carried, k, &found.solution))
+        .collect();
+    Ok(Payload {
+        robot: model.name().to_owned(),
+        link: link + 1,
+        rows: found.rows,
+        rank: found.rank,
+        condition: found.condition,
+        physical: Physical::of(&parameters),
+        parameters,
+        before: score::torque(model, robot, nominal),
+        after: score::torque(model, robot, &all),
+        warnings: logs.iter().flat_map(|log| log.warnings.clone()).collect(),
+        logs: observed.logs,
+        filter: plan.filtering,
+    })
+}
+
+/// The columns of K of the link, if everything fits the robot.
+fn carried(
+    model: &dyn IdentificationModel,
+    (nominal, link): (&[f64], usize),
+) -> Result<[Vec<f64>; 10], IdentifyError> {
+    let np = model.columns().len();
+    if nominal.len() != np {
+        return Err(IdentifyError::Parameters {
+            robot: model.name().to_owned(),
+            has: nominal.len(),
+            needs: np,
+        });
+    }
+    let carried = model.knowledge().carried(link, np);
+    match carried.iter().flatten().all(|factor| *factor == 0.0) {
+        true => Err(IdentifyError::NoLink {
+            robot: model.name().to_owned(),
+            link: link + 1,
+            links: model.joints().len(),
+        }),
+        false => Ok(carried),
+    }
+}
+
+fn parameters(found: &Estimate, sigmas: &[Option<f64>]) -> Vec<LoadParameter> {
+    let parameter = |k: usize| LoadParameter {
+        name: STANDARD[k].to_owned(),
+        unit: STANDARD_UNITS[k].to_owned(),
+        value: found.determined[k].then_some(found.solution[k]),
+        sigma: found.sigma[k],
+        sigma_corrected: sigmas[k].filter(|_| found.determined[k]),
+    };
+    (0..STANDARD.len()).map(parameter).collect()
+}
+
+/// What the load adds to base parameter `k`.
+fn along(carried: &[Vec<f64>; 10], k: usize, load: &[f64]) -> f64 {
+    let terms = carried.iter().zip(load);
+    terms.map(|(column, value)| column[k] * value).sum()
+}
+
+/// The equations of the load in those of a joint: \\( W K_l \\), and what the robot leaves of Y.
+/// Parameters of the load that the joint cannot see have no column.
+fn seen(block: &Equations, nominal: &[f64], carried: &[Vec<f64>; 10]) -> Equations {
+    let mut equations = Equations {
+        columns: Vec::new(),
+        rows: block.rows,
+        w: Vec::new(),
+        y: block.y.as_ref().map(|_| block.residual(nominal)),
+    };
+    for (parameter, factors) in carried.iter().enumerate() {
+        if block.columns.iter().any(|column| factors[*column] != 0.0) {
+            equations.columns.push(parameter);
+            equations.w.extend(block.product(factors));
+        }
+    }
+    equations
+}
+
+/// The load as a robot of its own: ten columns on the joints of the robot that carries it.
+struct Load<'a> {
+    robot: &'a dyn IdentificationModel,
+    columns: Vec<Column>,
+    nothing: Pattern,
+}
+
+impl<'a> Load<'a> {
+    fn of(robot: &'a dyn IdentificationModel, link: usize) -> Self {
+        let column = |k: usize| Column {
+            name: STANDARD[k].into(),
+            unit: STANDARD_UNITS[k].into(),
+            joint: link + 1,
+            kind: ColumnKind::Inertial,
+            meaning: "of the load".into(),
+            relation: STANDARD[k].into(),
+        };
+        Load {
+            robot,
+            columns: (0..STANDARD.len()).map(column).collect(),
+            nothing: Pattern {
+                entries: (&[]).into(),
+                signals: 0,
+            },
+        }
+    }
+}
+
+impl IdentificationModel for Load<'_> {
+    fn name(&self) -> &str {
+        self.robot.name()
+    }
+    fn joints(&self) -> &[Joint] {
+        self.robot.joints()
+    }
+    fn columns(&self) -> &[Column] {
+        &self.columns
+    }
+    fn pattern(&self, _output: Output) -> &Pattern {
+        &self.nothing
+    }
+    fn settings(&self) -> &Settings {
+        self.robot.settings()
+    }
+    fn evaluate(&self, _output: Output, _states: &States<'_>, _signals: &mut [f64]) {}
+}
