@@ -42,7 +42,8 @@ pub struct Instrumental {
 /// \\( Q^T Y \\) with the orthogonal factor Q of Z, and \\( Q^T W X = Q^T Y \\) is what remains.
 ///
 /// # Errors
-/// [`EstimateError`]; [`EstimateError::Singular`] if the instruments say nothing of W.
+/// [`EstimateError`]; [`EstimateError::Singular`] if the instruments say nothing of W, or have
+/// another shape.
 pub fn instrumental(
     blocks: &[Equations],
     instruments: &[Equations],
@@ -131,6 +132,10 @@ fn side_by_side<'a>(
     columns: &[usize],
 ) -> Result<Vec<Triangle>, EstimateError> {
     let one = |(block, (z, w)): (usize, (&Equations, &Equations))| {
+        if z.rows != w.rows || z.columns != w.columns {
+            // Not the same filters on the same samples: nothing can be said.
+            return Err(EstimateError::Singular);
+        }
         let place = |c: &usize| columns.binary_search(c).ok();
         let kept: Vec<(usize, usize)> = (w.columns.iter().enumerate())
             .filter_map(|(k, c)| Some((k, place(c)?)))
