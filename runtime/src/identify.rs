@@ -16,6 +16,7 @@ mod predict;
 mod prior;
 mod score;
 mod series;
+mod streamed;
 #[cfg(test)]
 pub(crate) mod tests;
 mod units;
@@ -29,11 +30,13 @@ pub use predict::predict;
 pub use series::series;
 pub use units::settle_units;
 
-use crate::estimate::{Estimate, estimate};
-use crate::log::Recording;
+use crate::estimate::{Estimate, EstimateError, Triangle, estimate, from_triangles};
+use crate::evidence::{self, Evidence};
+use crate::log::Samples;
 use crate::model::{Column, IdentificationModel};
 use crate::observe::ModelKind;
 use crate::report::{Identification, ModelResult, ParameterResult, Validation};
+use crate::settings::Weights;
 use observed::Observed;
 
 /// Is told what is being done, for a progress display. `()` ignores it.
@@ -56,15 +59,15 @@ impl Progress for () {
 /// [`IdentifyError`]: no logs, a log that does not fit the robot or lacks torque, logs in
 /// which nothing moves or that determine no parameter at all, logs too short for the filters or the
 /// number of parameters, settings out of range.
-pub fn identify(
+pub fn identify<L: Samples>(
     model: &dyn IdentificationModel,
-    train: &[Recording],
-    validate: &[Recording],
+    train: &[L],
+    validate: &[L],
     options: &Options,
     progress: &dyn Progress,
 ) -> Result<Identification, IdentifyError> {
     let plan = options.resolve(model, train)?;
-    let observe = |log| Observed::new(model, log, &plan, progress);
+    let observe = |log: &L| Observed::new(model, log, &plan, progress);
     let together = Observed::join(train.iter().map(observe))?;
     let checked = validate
         .iter()
@@ -76,11 +79,7 @@ pub fn identify(
         progress.step(&format!("solving the {} model", kind.name()));
         let estimate = solved(model, kind, &together, &plan)?;
         if !estimate.determined.is_empty() && !estimate.determined.contains(&true) {
-            return Err(IdentifyError::NothingDetermined {
-                model: kind,
-                logs: excited::names(train),
-                seen: excited::seen(train),
-            });
+            return Err(excited::nothing_determined(kind, train)?);
         }
         warnings.extend(warnings::of_estimate(
             model,
@@ -89,7 +88,7 @@ pub fn identify(
             &together.resting,
         ));
         let mut found = result(model, kind, &estimate, &together, &checked)?;
-        let sigmas = corrected::corrected(model, together.of(kind)?, plan.weights);
+        let sigmas = corrected::corrected(model, &together.of(kind)?.evidence, plan.weights);
         for (parameter, sigma) in found.parameters.iter_mut().zip(sigmas) {
             parameter.sigma_corrected = sigma.filter(|_| parameter.value.is_some());
         }
@@ -103,8 +102,8 @@ pub fn identify(
     warnings.extend(warnings::of_results(&models));
     Ok(Identification {
         robot: model.name().to_owned(),
-        samples: train.iter().map(|log| log.len).sum(),
-        rate_hz: train.first().map_or(0.0, |log| log.rate_hz),
+        samples: train.iter().map(|log| log.len()).sum(),
+        rate_hz: train.first().map_or(0.0, |log| log.rate_hz()),
         logs: together.logs,
         filter: plan.filtering,
         weights: plan.weights,
@@ -122,16 +121,29 @@ fn solved(
     observed: &Observed,
     plan: &Plan,
 ) -> Result<Estimate, IdentifyError> {
-    estimate(
-        &observed.of(kind)?.blocks,
-        model.columns().len(),
-        plan.weights,
-    )
-    .map(|estimate| estimate.counted(plan.degrees_of_freedom))
-    .map_err(|source| IdentifyError::Estimate {
-        model: kind,
-        source,
-    })
+    let gathered = observed.of(kind)?;
+    let np = model.columns().len();
+    let estimate = match &gathered.rows {
+        Some(rows) => estimate(&rows.blocks, np, plan.weights),
+        None => of_factors(&gathered.evidence, np, plan.weights),
+    };
+    estimate
+        .map(|estimate| estimate.counted(plan.degrees_of_freedom))
+        .map_err(|source| IdentifyError::Estimate {
+            model: kind,
+            source,
+        })
+}
+
+/// The estimate of equations that were not kept, from their factors.
+fn of_factors(evidence: &Evidence, np: usize, weights: Weights) -> Result<Estimate, EstimateError> {
+    let columns = &evidence.layout().joints;
+    let totals = evidence.totals();
+    let triangle = |(columns, total): (&Vec<usize>, &evidence::Triangle)| {
+        Triangle::from_upper(columns.clone(), total.rows(), |i, k| total.entry(i, k))
+    };
+    let triangles: Vec<Triangle> = columns.iter().zip(&totals).map(triangle).collect();
+    from_triangles(&triangles, np, weights)
 }
 
 /// Puts an estimate into words and scores it on the training and the validation logs.
@@ -146,7 +158,7 @@ fn result(
     let validation = validate
         .iter()
         .map(|observed| {
-            let fit = score::torque(model, observed.torque(kind)?, x);
+            let fit = score::torque(model, &observed.torque(kind)?.evidence, x);
             Ok(Validation {
                 log: observed.logs.join(" + "),
                 fit,
@@ -160,7 +172,7 @@ fn result(
         condition_unweighted: estimate.condition_unweighted,
         rank: estimate.rank,
         certified_digits: estimate.certified_digits(),
-        equation_pct: score::equations(train.of(kind)?, x),
+        equation_pct: score::equations(&train.of(kind)?.evidence, x),
         parameters: model
             .columns()
             .iter()
@@ -170,7 +182,7 @@ fn result(
                 ..parameter(column, k, estimate)
             })
             .collect(),
-        fit: score::torque(model, train.torque(kind)?, x),
+        fit: score::torque(model, &train.torque(kind)?.evidence, x),
         validation,
         with_prior: None,
         instrumented: None,

@@ -7,7 +7,7 @@ use clap::ValueEnum;
 use idim::runtime::identify::{
     Options, PriorUse, identify, instruments, payload, predict, series, settle_units,
 };
-use idim::runtime::log::{self, Companion, LogSpec, ReadOptions, Recording};
+use idim::runtime::log::{self, Companion, Log, LogSpec, ReadOptions, Recording};
 use idim::runtime::model::IdentificationModel;
 use idim::runtime::observe::ModelKind;
 use idim::runtime::report::{Identification, Role, html, payload_terminal, terminal};
@@ -202,19 +202,26 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         return load(model.as_ref(), link, &train, arguments, &spinner);
     }
     let validate = read(&arguments.validate)?.into_iter();
-    let validate: Vec<Recording> = validate.map(|(log, _)| log).collect();
-    let (train, companions): (Vec<Recording>, Vec<Companion>) = train.into_iter().unzip();
+    let validate: Vec<Log> = validate.map(|(log, _)| log).collect();
+    let (train, companions): (Vec<Log>, Vec<Companion>) = train.into_iter().unzip();
     let mut result = identify(model.as_ref(), &train, &validate, &options, &spinner)?;
     if let Some(Instruments::Simulated) = arguments.instruments {
-        let logs: Vec<_> = train.iter().cloned().zip(companions).collect();
-        instruments(model.as_ref(), &logs, &validate, &mut result, &spinner)?;
+        let logs: Vec<_> = all_held(&train)?.into_iter().zip(companions).collect();
+        instruments(
+            model.as_ref(),
+            &logs,
+            &all_held(&validate)?,
+            &mut result,
+            &spinner,
+        )?;
     }
     result.command = Some(output::command_line());
     if let Some(folder) = &arguments.predictions {
-        predictions(model.as_ref(), &validate, &result, folder)?;
+        predictions(model.as_ref(), &all_held(&validate)?, &result, folder)?;
     }
     if arguments.html.is_some() {
         spinner.say("drawing");
+        let (train, validate) = (beginnings(&train)?, beginnings(&validate)?);
         draw(model.as_ref(), &train, &validate, &mut result)?;
     }
     spinner.finish();
@@ -235,7 +242,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 fn load(
     model: &dyn IdentificationModel,
     link: usize,
-    logs: &[(Recording, Companion)],
+    logs: &[(Log, Companion)],
     arguments: &Arguments,
     spinner: &Spinner,
 ) -> Result<(), Failure> {
@@ -244,7 +251,10 @@ fn load(
         Some(path) => parameters::read(path, model, &robot::derived(&arguments.robot)?)?,
         None => described(model)?,
     };
-    let logs: Vec<Recording> = logs.iter().map(|(log, _)| log.clone()).collect();
+    let logs: Vec<Recording> = logs
+        .iter()
+        .map(|(log, _)| held(log))
+        .collect::<Result<_, _>>()?;
     let options = arguments.choices.options();
     let found = payload(model, &logs, (&nominal, link), &options, spinner)?;
     spinner.finish();
@@ -300,26 +310,52 @@ pub fn draw(
 
 fn read(
     model: &dyn IdentificationModel,
-    logs: &[String],
+    names: &[String],
     (map, options): (Option<&Path>, &Options),
     spinner: &Spinner,
-) -> Result<Vec<(Recording, Companion)>, Failure> {
+) -> Result<Vec<(Log, Companion)>, Failure> {
     let reading = ReadOptions {
         require_torque: true,
         companion: map.map(Path::to_owned),
     };
-    let mut recordings = Vec::with_capacity(logs.len());
-    for name in logs {
+    let mut logs = Vec::with_capacity(names.len());
+    for name in names {
         spinner.say(&format!("reading {name}"));
         let spec: LogSpec = name.parse()?;
         let drives = &model.settings().drives;
-        let (mut recording, companion) = log::read(&spec, model.joints(), drives, &reading)?;
-        settle_units(model, &mut recording, &companion, options);
-        let off = fits::reference(model, &recording, &companion)?;
-        recording.warnings.extend(off);
-        recordings.push((recording, companion));
+        let (mut log, companion) = Log::read(&spec, model.joints(), drives, &reading)?;
+        if let Log::Held(recording) = &mut log {
+            settle_units(model, recording, &companion, options);
+            let off = fits::reference(model, recording, &companion)?;
+            recording.warnings.extend(off);
+        }
+        logs.push((log, companion));
     }
-    Ok(recordings)
+    Ok(logs)
+}
+
+/// What a page can show of logs: the beginning of long ones.
+fn beginnings(logs: &[Log]) -> Result<Vec<Recording>, Failure> {
+    const SHOWN: usize = 100_000;
+    logs.iter().map(|log| Ok(log.beginning(SHOWN)?)).collect()
+}
+
+/// The recordings of logs that are held in memory.
+fn all_held(logs: &[Log]) -> Result<Vec<Recording>, Failure> {
+    logs.iter().map(held).collect()
+}
+
+fn held(log: &Log) -> Result<Recording, Failure> {
+    match log {
+        Log::Held(recording) => Ok(recording.clone()),
+        Log::Long(long) => Err(Failure::Usage {
+            message: format!(
+                "{} has {} samples: too many to hold at once, as this needs",
+                long.name, long.len
+            ),
+            help: "name parts of it, such as LOG@0..60".into(),
+        }),
+    }
 }
 
 /// `LOGSTEM_MODEL.csv.gz` for each validation log and model: t, tau1.. on the rows of the log.

@@ -80,6 +80,26 @@ pub fn estimate(
     }
 }
 
+/// Estimates `np` parameters from the factors of blocks of equations, when the equations
+/// themselves are not at hand: without refinement, and without weights for single rows
+/// ([`Weights::Robust`] is then [`Weights::Joint`]).
+///
+/// # Errors
+/// As [`estimate`].
+pub fn from_triangles(
+    triangles: &[Triangle],
+    np: usize,
+    weights: Weights,
+) -> Result<Estimate, EstimateError> {
+    let ordinary = solve(triangles, &vec![1.0; triangles.len()], np)?;
+    match weights {
+        Weights::Joint | Weights::Robust if triangles.len() > 1 => {
+            weighted(triangles, &ordinary, np)
+        }
+        _ => Ok(ordinary),
+    }
+}
+
 /// Weighted least squares with the joints' error levels under `ordinary`.
 fn weighted(
     triangles: &[Triangle],

@@ -27,7 +27,7 @@ pub use double::Double;
 pub use entries::Entries;
 pub use identifiable::Dependency;
 pub use instrumental::{Instrumental, instrumental, long_run};
-pub use least_squares::{Estimate, estimate};
+pub use least_squares::{Estimate, estimate, from_triangles};
 pub use refine::{Refined, refine, refined};
 pub use robust::row_factors;
 pub use triangle::Triangle;

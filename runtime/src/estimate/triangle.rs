@@ -78,6 +78,18 @@ impl Triangle {
         })
     }
 
+    /// From a factor that was made elsewhere: `entry(i, k)` of the upper triangle of `rows`
+    /// equations over `columns` and the measurements.
+    pub fn from_upper(
+        columns: Vec<usize>,
+        rows: usize,
+        entry: impl Fn(usize, usize) -> f64,
+    ) -> Self {
+        let width = columns.len() + 1;
+        let r = Mat::from_fn(width, width, |i, k| if i <= k { entry(i, k) } else { 0.0 });
+        Triangle { columns, rows, r }
+    }
+
     /// \\( \|Y - W X\| \\) for parameters X of the whole model.
     pub fn residual_norm(&self, parameters: &[f64]) -> f64 {
         let last = self.columns.len();

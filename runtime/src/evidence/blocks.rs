@@ -160,7 +160,7 @@ impl Evidence {
     }
 
     /// The factors of all blocks together, by joint.
-    pub(super) fn totals(&self) -> Vec<Triangle> {
+    pub fn totals(&self) -> Vec<Triangle> {
         let joints = 0..self.layout.joints.len();
         joints
             .map(|joint| self.joint_factor(joint, 0..self.blocks()))

@@ -1,7 +1,7 @@
 //! Filters chosen from the data, by the rules of Gautier 1996, section 6.
 
 use super::{IdentifyError, excited};
-use crate::log::Recording;
+use crate::log::{Recording, Samples};
 use crate::observe::rests;
 use crate::settings::Edges;
 use crate::signal::bandwidth;
@@ -42,7 +42,8 @@ pub(super) struct Chosen {
 
 /// Completes what is `given` (cut-off of the prefilter, ratio, trim) from the logs.
 pub(super) fn from_logs(
-    logs: &[Recording],
+    logs: &[&dyn Samples],
+    looks: &[Recording],
     parameters: usize,
     edges: Edges,
     given: (Option<f64>, Option<usize>, Option<usize>),
@@ -51,7 +52,7 @@ pub(super) fn from_logs(
     let (fq, nd, trim) = given;
     let dyn_hz = match (fq, nd) {
         (Some(_), Some(_)) => 0.0,
-        _ => motion_band(logs)?,
+        _ => motion_band(looks)?,
     };
     let open = [
         ("fq_hz", fq.is_none()),
@@ -74,17 +75,36 @@ pub(super) fn from_logs(
     })
 }
 
+/// What is looked at to judge the motion: all of a log, or some windows of a long one.
+pub(super) fn looks(logs: &[&dyn Samples]) -> Result<Vec<Recording>, IdentifyError> {
+    const WINDOW: usize = 1 << 15;
+    const LOOKS: usize = 4;
+    let mut looks = Vec::new();
+    for log in logs {
+        let len = log.len();
+        if len <= LOOKS * WINDOW {
+            looks.push(log.window(0..len)?);
+            continue;
+        }
+        for look in 0..LOOKS {
+            let start = look * (len - WINDOW) / (LOOKS - 1);
+            looks.push(log.window(start..start + WINDOW)?);
+        }
+    }
+    Ok(looks)
+}
+
 /// The lowest sampling rate of the logs, Hz.
-fn slowest_rate(logs: &[Recording]) -> Result<f64, IdentifyError> {
+fn slowest_rate(logs: &[&dyn Samples]) -> Result<f64, IdentifyError> {
     let is_rate = |rate_hz: f64| rate_hz > 0.0 && rate_hz.is_finite();
-    if let Some(log) = logs.iter().find(|log| !is_rate(log.rate_hz)) {
+    if let Some(log) = logs.iter().find(|log| !is_rate(log.rate_hz())) {
         return Err(IdentifyError::Rate {
-            log: log.name.clone(),
-            rate_hz: log.rate_hz,
+            log: log.name().to_owned(),
+            rate_hz: log.rate_hz(),
         });
     }
     logs.iter()
-        .map(|log| log.rate_hz)
+        .map(|log| log.rate_hz())
         .reduce(f64::min)
         .ok_or(IdentifyError::NoLogs)
 }
@@ -116,9 +136,9 @@ fn two_digits(x: f64) -> f64 {
 }
 
 /// Decimation ratio: \\( n_d = 0.8 (\omega_c / 2) / \omega_{fp} \\), less if too few rows remain.
-fn ratio(dyn_hz: f64, rate_hz: f64, logs: &[Recording], parameters: usize) -> usize {
+fn ratio(dyn_hz: f64, rate_hz: f64, logs: &[&dyn Samples], parameters: usize) -> usize {
     let by_band = FP_OVER_DECIMATED * rate_hz / 2.0 / (FP_OVER_DYN * dyn_hz);
-    let samples: usize = logs.iter().map(|log| log.len).sum();
+    let samples: usize = logs.iter().map(|log| log.len()).sum();
     let by_rows = samples / (ROWS_PER_PARAMETER * parameters.max(1));
     (by_band.floor().min(1e6) as usize).min(by_rows).max(1)
 }
@@ -138,6 +158,10 @@ fn edge(fq_hz: f64, rate_hz: f64, nd: usize, edges: Edges) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn sources(logs: &[Recording]) -> Vec<&dyn Samples> {
+        logs.iter().map(|log| log as &dyn Samples).collect()
+    }
 
     fn log(hz: f64, rate_hz: f64, len: usize) -> Recording {
         let wave = |i| (std::f64::consts::TAU * hz * i as f64 / rate_hz).sin();
@@ -159,7 +183,8 @@ mod tests {
     #[test]
     fn filters_follow_the_band_of_the_motion() {
         let logs = [log(2.0, 1000.0, 10_000)];
-        let chosen = from_logs(&logs, 5, Edges::Scipy, (None, None, None)).unwrap();
+        let chosen =
+            from_logs(&sources(&logs), &logs, 5, Edges::Scipy, (None, None, None)).unwrap();
         assert!((20.0..25.0).contains(&chosen.fq_hz), "{}", chosen.fq_hz);
         assert!((32..=40).contains(&chosen.nd), "{}", chosen.nd);
         assert_eq!(chosen.names, ["fq_hz", "nd", "trim"]);
@@ -168,7 +193,14 @@ mod tests {
     #[test]
     fn given_choices_are_kept() {
         let logs = [log(2.0, 1000.0, 10_000)];
-        let chosen = from_logs(&logs, 5, Edges::Matlab, (Some(7.0), Some(3), Some(0))).unwrap();
+        let chosen = from_logs(
+            &sources(&logs),
+            &logs,
+            5,
+            Edges::Matlab,
+            (Some(7.0), Some(3), Some(0)),
+        )
+        .unwrap();
         assert_eq!((chosen.fq_hz, chosen.nd, chosen.trim), (7.0, 3, 0));
         assert!(chosen.names.is_empty());
     }
@@ -176,7 +208,8 @@ mod tests {
     #[test]
     fn a_short_log_is_decimated_less() {
         let logs = [log(1.0, 1000.0, 3000)];
-        let chosen = from_logs(&logs, 30, Edges::Scipy, (None, None, None)).unwrap();
+        let chosen =
+            from_logs(&sources(&logs), &logs, 30, Edges::Scipy, (None, None, None)).unwrap();
         assert_eq!(chosen.nd, 10);
     }
 
@@ -190,7 +223,7 @@ mod tests {
     #[test]
     fn logs_without_motion_or_rate_are_errors() {
         let logs = [log(0.0, 100.0, 500)];
-        let error = from_logs(&logs, 5, Edges::Scipy, (None, None, None)).err();
+        let error = from_logs(&sources(&logs), &logs, 5, Edges::Scipy, (None, None, None)).err();
         assert_eq!(
             error,
             Some(IdentifyError::NothingMoves {
@@ -198,13 +231,13 @@ mod tests {
                 seen: "q1 constant".into(),
             })
         );
-        let error = from_logs(&[], 5, Edges::Scipy, (None, None, None)).err();
+        let error = from_logs(&[], &[], 5, Edges::Scipy, (None, None, None)).err();
         assert_eq!(error, Some(IdentifyError::NoLogs));
         let logs = [Recording {
             rate_hz: f64::NAN,
             ..log(1.0, 100.0, 500)
         }];
-        let error = from_logs(&logs, 5, Edges::Scipy, (None, None, None)).err();
+        let error = from_logs(&sources(&logs), &logs, 5, Edges::Scipy, (None, None, None)).err();
         assert!(matches!(error, Some(IdentifyError::Rate { .. })));
     }
 }

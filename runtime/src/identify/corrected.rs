@@ -1,8 +1,7 @@
 //! Standard deviations that hold although filtered residuals are correlated in time.
 
-use crate::evidence::{Cut, Evidence, Question, Weighting};
+use crate::evidence::{Evidence, Question, Weighting};
 use crate::model::IdentificationModel;
-use crate::observe::Observations;
 use crate::settings::Weights;
 
 /// The normal quantile that users multiply a standard deviation with for 95 %.
@@ -16,7 +15,7 @@ const NORMAL: f64 = 1.96;
 /// `None` where the log is too short to tell, or where rows were reweighted one by one.
 pub(super) fn corrected(
     model: &dyn IdentificationModel,
-    observations: &Observations,
+    evidence: &Evidence,
     weights: Weights,
 ) -> Vec<Option<f64>> {
     let silent = || vec![None; model.columns().len()];
@@ -25,11 +24,9 @@ pub(super) fn corrected(
         Weights::Joint => Weighting::Residual,
         Weights::Robust => return silent(),
     };
-    let covariance = Evidence::from_observations(model, observations, &[], Cut::default())
-        .and_then(|evidence| {
-            let fit = evidence.fit(&Question::parameters(&evidence, weighting))?;
-            evidence.corrected(&fit)
-        });
+    let covariance = evidence
+        .fit(&Question::parameters(evidence, weighting))
+        .and_then(|fit| evidence.corrected(&fit));
     match covariance {
         Ok(covariance) => (0..model.columns().len())
             .map(|column| {

@@ -2,6 +2,7 @@
 
 use crate::estimate::EstimateError;
 use crate::evidence::EvidenceError;
+use crate::log::LogError;
 use crate::observe::{ModelKind, ObserveError};
 use crate::simulate::SimulateError;
 
@@ -94,6 +95,17 @@ pub enum IdentifyError {
         /// Links there are.
         links: usize,
     },
+    /// The equations cannot be reduced to evidence.
+    #[error("the {} model: {message}", model.name())]
+    Evidence {
+        /// Which model.
+        model: ModelKind,
+        /// Why.
+        message: String,
+    },
+    /// Samples of a log that stays on disk cannot be read again.
+    #[error("the samples of a log cannot be read again: {0}")]
+    Unreadable(String),
     /// A wrong number of parameters for a prediction.
     #[error("{has} parameters were given and the robot {robot} has {needs}")]
     Parameters {
@@ -111,5 +123,22 @@ impl IdentifyError {
     pub(super) fn prior(model: ModelKind, source: EvidenceError) -> Self {
         let message = source.to_string();
         IdentifyError::Prior { model, message }
+    }
+
+    /// What the evidence of a model says against it.
+    pub(super) fn evidence(model: ModelKind) -> impl Fn(EvidenceError) -> Self {
+        move |source| match source {
+            EvidenceError::Estimate(source) => IdentifyError::Estimate { model, source },
+            other => IdentifyError::Evidence {
+                model,
+                message: other.to_string(),
+            },
+        }
+    }
+}
+
+impl From<LogError> for IdentifyError {
+    fn from(error: LogError) -> Self {
+        IdentifyError::Unreadable(error.to_string())
     }
 }

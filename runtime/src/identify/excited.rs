@@ -1,8 +1,8 @@
 //! Whether anything moves in the logs, and how far.
 
-use super::IdentifyError;
-use crate::log::Recording;
-use crate::observe::rests;
+use super::{IdentifyError, choice};
+use crate::log::{Recording, Samples};
+use crate::observe::{ModelKind, rests};
 use crate::signal::bandwidth;
 
 /// Fewer steps of its encoder than this are the last digits of a joint at rest.
@@ -14,7 +14,7 @@ const BEYOND_NOISE: f64 = 0.02;
 /// Fewest samples in which noise and motion can be told apart.
 const FEWEST: usize = 32;
 
-/// An error unless some joint moves in some log.
+/// An error unless some joint moves in some log, or part of one.
 ///
 /// # Errors
 /// [`IdentifyError::NothingMoves`].
@@ -33,14 +33,32 @@ pub(super) fn nothing_moves(logs: &[Recording]) -> IdentifyError {
     }
 }
 
+/// Logs that determine no parameter of a model.
+///
+/// # Errors
+/// [`IdentifyError::Unreadable`] if the logs cannot be looked at again.
+pub(super) fn nothing_determined<L: Samples>(
+    model: ModelKind,
+    train: &[L],
+) -> Result<IdentifyError, IdentifyError> {
+    let train: Vec<&dyn Samples> = train.iter().map(|log| log as &dyn Samples).collect();
+    let looks = choice::looks(&train)?;
+    Ok(IdentifyError::NothingDetermined {
+        model,
+        logs: names(&looks),
+        seen: seen(&looks),
+    })
+}
+
 /// Names of the logs, in a row.
-pub(super) fn names(logs: &[Recording]) -> String {
-    let names: Vec<&str> = logs.iter().map(|log| log.name.as_str()).collect();
+fn names(logs: &[Recording]) -> String {
+    let mut names: Vec<&str> = logs.iter().map(|log| log.name.as_str()).collect();
+    names.dedup();
     names.join(", ")
 }
 
 /// How far each joint moves in any of the logs, and how many of its encoder's steps that is.
-pub(super) fn seen(logs: &[Recording]) -> String {
+fn seen(logs: &[Recording]) -> String {
     let joints = logs.first().map_or(0, |log| log.q.len());
     let of_joint = |joint: usize| {
         let series = logs.iter().filter_map(|log| log.q.get(joint));

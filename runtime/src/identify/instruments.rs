@@ -42,7 +42,7 @@ pub fn instruments(
         weights: result.weights,
         degrees_of_freedom: model.settings().degrees_of_freedom.unwrap_or_default(),
     };
-    let observe = |log: &Recording| Observed::new(model, log, &plan, progress);
+    let observe = |log: &Recording| Observed::kept(model, log, &plan, progress);
     let measured = Observed::join(train.iter().map(|(log, _)| observe(log)))?;
     let checked = validate
         .iter()
@@ -62,15 +62,15 @@ pub fn instruments(
     for result in &mut result.models {
         let estimate = search.solve(result.name, &found.simulated, &result.solution())?;
         let solution = &estimate.solution;
-        let fit = score::torque(model, measured.torque(result.name)?, solution);
+        let fit = score::torque(model, &measured.torque(result.name)?.evidence, solution);
         let validation = checked.iter().map(|observed| {
             Ok(Validation {
                 log: observed.logs.join(" + "),
-                fit: score::torque(model, observed.torque(result.name)?, solution),
+                fit: score::torque(model, &observed.torque(result.name)?.evidence, solution),
             })
         });
         let validation = validation.collect::<Result<Vec<_>, IdentifyError>>()?;
-        let values = values(&estimate, &measured.of(result.name)?.blocks);
+        let values = values(&estimate, &measured.rows(result.name)?.blocks);
         let biased = values.iter().zip(&result.parameters);
         let biased = biased
             .filter(|(value, _)| value.biased)
@@ -168,7 +168,7 @@ impl Search<'_> {
                 doubtful: log.doubtful.clone(),
                 ..simulated.into_recording(&log.name)
             };
-            Observed::new(self.model, &recording, self.plan, self.progress)
+            Observed::kept(self.model, &recording, self.plan, self.progress)
         }))
     }
 
@@ -179,7 +179,10 @@ impl Search<'_> {
         x: &[f64],
     ) -> Result<Instrumental, IdentifyError> {
         let np = self.model.columns().len();
-        let (w, z) = (&self.measured.of(kind)?.blocks, &simulated.of(kind)?.blocks);
+        let (w, z) = (
+            &self.measured.rows(kind)?.blocks,
+            &simulated.rows(kind)?.blocks,
+        );
         let estimate = |start: &[f64]| {
             instrumental(w, z, np, start).map_err(|source| IdentifyError::Estimate {
                 model: kind,

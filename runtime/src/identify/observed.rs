@@ -1,79 +1,168 @@
 //! What is observed along one log, or along several together.
 
+use super::streamed::streamed;
 use super::{IdentifyError, Plan, Progress};
-use crate::log::Recording;
+use crate::evidence::{Cut, Evidence, EvidenceError};
+use crate::log::Samples;
 use crate::model::IdentificationModel;
-use crate::observe::{ModelKind, Motion, Observations, check_torque, observe};
+use crate::observe::{Course, ModelKind, Motion, Observations, check, check_torque, observe};
+use crate::settings::Weights;
 
-/// The equations of all models that a plan needs, along one or several logs.
+/// Equations with more entries than this are not kept: the evidence answers without them, and
+/// nothing that would look at single rows again is worth their memory (16 MB).
+const KEPT: usize = 2_000_000;
+
+/// What all models that a plan needs make of one or several logs.
 pub(super) struct Observed {
     /// Names of the logs.
     pub logs: Vec<String>,
     /// Joints that rest in all of the logs, counted from 0.
     pub resting: Vec<usize>,
-    /// Equations of each model that is needed.
-    observations: Vec<Observations>,
+    /// Each model that is needed.
+    models: Vec<Gathered>,
+}
+
+/// What one model makes of logs.
+pub(super) struct Gathered {
+    pub kind: ModelKind,
+    /// The equations reduced to factors.
+    pub evidence: Evidence,
+    /// The equations themselves, if they are few or rows are to be weighted one by one.
+    pub rows: Option<Observations>,
 }
 
 impl Observed {
     /// Filters a log and makes the equations.
     pub fn new(
         model: &dyn IdentificationModel,
-        log: &Recording,
+        log: &dyn Samples,
         plan: &Plan,
         progress: &dyn Progress,
     ) -> Result<Self, IdentifyError> {
-        check_torque(log)?;
-        progress.step(&format!("filtering {}", log.name));
-        let motion = Motion::trimmed(log, model.joints().len(), &plan.filtering)?;
-        let mut observations = Vec::new();
+        let equations = log.len() / plan.filtering.nd.max(1) * model.joints().len();
+        let few = equations.saturating_mul(model.columns().len()) <= KEPT;
+        match few || plan.weights == Weights::Robust {
+            true => Observed::kept(model, log, plan, progress),
+            false => Observed::streamed(model, log, plan, progress),
+        }
+    }
+
+    /// From a log that fits in memory, its equations kept.
+    pub fn kept(
+        model: &dyn IdentificationModel,
+        log: &dyn Samples,
+        plan: &Plan,
+        progress: &dyn Progress,
+    ) -> Result<Self, IdentifyError> {
+        let recording = log.window(0..log.len())?;
+        check(&recording, model.joints().len())?;
+        check_torque(&recording)?;
+        progress.step(&format!("filtering {}", log.name()));
+        let motion = Motion::trimmed(&recording, model.joints().len(), &plan.filtering)?;
+        let mut models = Vec::new();
         for kind in plan.observed() {
-            progress.step(&format!("{} model along {}", kind.name(), log.name));
-            observations.push(observe(model, kind, &motion, &plan.filtering)?);
+            progress.step(&format!("{} model along {}", kind.name(), log.name()));
+            let rows = observe(model, kind, &motion, &plan.filtering)?;
+            let evidence = Evidence::from_observations(model, &rows, &[], Cut::default());
+            models.push(Gathered {
+                kind,
+                evidence: evidence.map_err(IdentifyError::evidence(kind))?,
+                rows: Some(rows),
+            });
         }
         Ok(Observed {
             logs: vec![motion.log],
             resting: motion.resting,
-            observations,
+            models,
         })
     }
 
-    /// The equations of several logs together, one log after the other.
+    /// From a log of any length, reduced to evidence on the way.
+    fn streamed(
+        model: &dyn IdentificationModel,
+        log: &dyn Samples,
+        plan: &Plan,
+        progress: &dyn Progress,
+    ) -> Result<Self, IdentifyError> {
+        progress.step(&format!("looking through {}", log.name()));
+        let course = Course::new(log, model.joints().len(), &plan.filtering)?;
+        progress.step(&format!("reducing {} to evidence", log.name()));
+        let gathered = |(kind, evidence)| Gathered {
+            kind,
+            evidence,
+            rows: None,
+        };
+        let evidence = streamed(model, &course, &plan.observed(), Cut::default())?;
+        Ok(Observed {
+            logs: vec![log.name().to_owned()],
+            resting: course.resting(),
+            models: plan
+                .observed()
+                .into_iter()
+                .zip(evidence)
+                .map(gathered)
+                .collect(),
+        })
+    }
+
+    /// What several logs say together, one log after the other.
     pub fn join(
         logs: impl Iterator<Item = Result<Self, IdentifyError>>,
     ) -> Result<Self, IdentifyError> {
         let mut together: Option<Observed> = None;
         for observed in logs {
             match &mut together {
-                Some(together) => together.append(observed?),
+                Some(together) => together.append(observed?)?,
                 None => together = Some(observed?),
             }
         }
         together.ok_or(IdentifyError::NoLogs)
     }
 
-    fn append(&mut self, other: Observed) {
+    fn append(&mut self, other: Observed) -> Result<(), IdentifyError> {
         self.resting.retain(|joint| other.resting.contains(joint));
-        for (all, more) in self.observations.iter_mut().zip(&other.observations) {
-            all.append(more);
+        for (all, more) in self.models.iter_mut().zip(&other.models) {
+            all.append(more)
+                .map_err(IdentifyError::evidence(more.kind))?;
         }
         self.logs.extend(other.logs);
+        Ok(())
     }
 
-    /// The equations of a model.
-    pub fn of(&self, kind: ModelKind) -> Result<&Observations, IdentifyError> {
-        self.observations
+    /// What a model makes of the logs.
+    pub fn of(&self, kind: ModelKind) -> Result<&Gathered, IdentifyError> {
+        self.models
             .iter()
-            .find(|o| o.model == kind)
+            .find(|m| m.kind == kind)
             .ok_or(IdentifyError::NoLogs)
     }
 
-    /// The equations in which torque is predicted with the parameters of a model: its own, or
-    /// the explicit ones for the power model, which has none for a single joint.
-    pub fn torque(&self, kind: ModelKind) -> Result<&Observations, IdentifyError> {
+    /// The equations of a model; there are none unless all logs' were kept.
+    pub fn rows(&self, kind: ModelKind) -> Result<&Observations, IdentifyError> {
+        self.of(kind)?.rows.as_ref().ok_or(IdentifyError::NoLogs)
+    }
+
+    /// The model in which torque is predicted with the parameters of a model: its own, or the
+    /// explicit one for the power model, which has none for a single joint.
+    pub fn torque(&self, kind: ModelKind) -> Result<&Gathered, IdentifyError> {
         match kind {
             ModelKind::Power => self.of(ModelKind::Explicit),
             ModelKind::Explicit | ModelKind::Implicit => self.of(kind),
         }
+    }
+}
+
+impl Gathered {
+    /// Adds what another log says. Rows are kept only if both have kept them.
+    fn append(&mut self, more: &Gathered) -> Result<(), EvidenceError> {
+        self.evidence.merge(&more.evidence)?;
+        self.rows = match (self.rows.take(), &more.rows) {
+            (Some(mut rows), Some(more)) => {
+                rows.append(more);
+                Some(rows)
+            }
+            _ => None,
+        };
+        Ok(())
     }
 }

@@ -1,7 +1,7 @@
 //! What the user may choose, and how it becomes a plan.
 
 use super::{IdentifyError, choice, excited};
-use crate::log::Recording;
+use crate::log::Samples;
 use crate::model::IdentificationModel;
 use crate::observe::{Filtering, ModelKind, check};
 use crate::settings::{Edges, Freedom, Velocity, Weights};
@@ -65,10 +65,10 @@ impl Options {
     /// [`IdentifyError::NoLogs`]; [`IdentifyError::Rate`]; [`IdentifyError::Observe`] if a log does
     /// not fit the robot; [`IdentifyError::NothingMoves`] for logs without
     /// motion.
-    pub fn resolve(
+    pub fn resolve<L: Samples>(
         &self,
         model: &dyn IdentificationModel,
-        train: &[Recording],
+        train: &[L],
     ) -> Result<Plan, IdentifyError> {
         let set = model.settings();
         let edges = self.edges.or(set.edges).unwrap_or(Edges::Scipy);
@@ -79,11 +79,14 @@ impl Options {
             .trim
             .filter(|_| edges == set.edges.unwrap_or(Edges::Scipy));
         let trim = self.trim.or(own_trim);
-        for log in train {
-            check(log, model.joints().len())?;
+        let train: Vec<&dyn Samples> = train.iter().map(|log| log as &dyn Samples).collect();
+        let looks = choice::looks(&train)?;
+        for look in &looks {
+            check(look, model.joints().len())?;
         }
-        excited::check(train)?;
-        let chosen = choice::from_logs(train, model.columns().len(), edges, (fq_hz, nd, trim))?;
+        excited::check(&looks)?;
+        let (np, given) = (model.columns().len(), (fq_hz, nd, trim));
+        let chosen = choice::from_logs(&train, &looks, np, edges, given)?;
         let filtering = Filtering {
             fq_hz: chosen.fq_hz,
             order,

@@ -3,6 +3,7 @@
 use super::corrected::corrected;
 use super::{IdentifyError, Observed, Options, Progress, score};
 use crate::estimate::{Estimate, estimate};
+use crate::evidence::{Cut, Evidence};
 use crate::knowledge::{STANDARD, STANDARD_UNITS};
 use crate::log::Recording;
 use crate::model::{Column, ColumnKind, IdentificationModel, Joint, Output, Pattern, States};
@@ -33,11 +34,11 @@ pub fn payload(
         ..options.clone()
     };
     let plan = asked.resolve(model, logs)?;
-    let observe = |log| Observed::new(model, log, &plan, progress);
+    let observe = |log: &Recording| Observed::kept(model, log, &plan, progress);
     let observed = Observed::join(logs.iter().map(observe))?;
     let kind = ModelKind::Explicit;
-    let robot = observed.of(kind)?;
-    let blocks = robot.blocks.iter();
+    let robot = &observed.of(kind)?.evidence;
+    let blocks = observed.rows(kind)?.blocks.iter();
     let load = Observations {
         model: kind,
         blocks: blocks.map(|block| seen(block, nominal, &carried)).collect(),
@@ -48,7 +49,10 @@ pub fn payload(
             source,
         }
     })?;
-    let sigmas = corrected(&Load::of(model, link), &load, plan.weights);
+    let on_load = Load::of(model, link);
+    let evidence = Evidence::from_observations(&on_load, &load, &[], Cut::default())
+        .map_err(IdentifyError::evidence(kind))?;
+    let sigmas = corrected(&on_load, &evidence, plan.weights);
     let parameters = parameters(&found, &sigmas);
     let all: Vec<f64> = (0..np)
         .map(|k| nominal[k] + along(&carried, k, &found.solution))

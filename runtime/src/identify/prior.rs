@@ -1,6 +1,7 @@
 //! The estimate with prior knowledge, beside the classical one.
 
-use super::{IdentifyError, Observed, score};
+use super::observed::{Gathered, Observed};
+use super::{IdentifyError, score};
 use crate::estimate::{Estimate, row_factors};
 use crate::evidence::{Cut, Evidence, EvidenceError, Posterior, Weighting};
 use crate::model::IdentificationModel;
@@ -50,14 +51,14 @@ pub(super) fn add(
     let scored = validate.iter().map(|observed| {
         Ok(Validation {
             log: observed.logs.join(" + "),
-            fit: score::torque(model, observed.torque(kind)?, x),
+            fit: score::torque(model, &observed.torque(kind)?.evidence, x),
         })
     });
     result.with_prior = Some(WithPrior {
         from_prior: posterior.from_prior,
         misfit: posterior.misfit,
         inflation,
-        fit: score::torque(model, train.torque(kind)?, x),
+        fit: score::torque(model, &train.torque(kind)?.evidence, x),
         validation: scored.collect::<Result<Vec<_>, IdentifyError>>()?,
         solution: posterior.mean,
     });
@@ -66,21 +67,21 @@ pub(super) fn add(
 
 fn posterior(
     model: &dyn IdentificationModel,
-    observations: &Observations,
+    gathered: &Gathered,
     (weights, estimate): (Weights, &Estimate),
     inflation: f64,
     prior: &[f64],
 ) -> Result<Posterior, EvidenceError> {
-    let gather = |equations: &Observations| {
-        Evidence::from_observations(model, equations, &[], Cut::Blocks(1))
-    };
-    match weights {
-        Weights::None | Weights::Joint => {
-            gather(observations)?.posterior(&Weighting::Residual, inflation, prior)
-        }
-        Weights::Robust => {
+    match (weights, &gathered.rows) {
+        (Weights::Robust, Some(rows)) => {
             let levels = Weighting::Given(estimate.joint_sigma.clone());
-            gather(&reweighted(observations, estimate))?.posterior(&levels, inflation, prior)
+            let rows = reweighted(rows, estimate);
+            Evidence::from_observations(model, &rows, &[], Cut::Blocks(1))?
+                .posterior(&levels, inflation, prior)
+        }
+        _ => {
+            let evidence = &gathered.evidence;
+            evidence.posterior(&Weighting::Residual, inflation, prior)
         }
     }
 }

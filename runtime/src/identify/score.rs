@@ -1,21 +1,17 @@
 //! How well parameters explain torque.
 
+use crate::evidence::Evidence;
 use crate::model::{IdentificationModel, JointKind};
-use crate::observe::{Equations, Observations};
 use crate::report::{Fit, JointFit};
 
 /// Error of the torque of each joint and of all: \\( 100 \|\tau - W X\| / \|\tau\| \\) on the
 /// filtered, decimated signals.
 pub(super) fn torque(
     model: &dyn IdentificationModel,
-    observations: &Observations,
+    evidence: &Evidence,
     parameters: &[f64],
 ) -> Fit {
-    let errors: Vec<Squares> = observations
-        .blocks
-        .iter()
-        .map(|block| Squares::of(block, parameters))
-        .collect();
+    let errors = Squares::of(evidence, parameters);
     let joints = errors.iter().zip(model.joints());
     let joints = joints.map(|(error, joint)| JointFit {
         name: joint.name.to_string(),
@@ -38,12 +34,8 @@ pub(super) fn unit(kind: JointKind) -> &'static str {
 }
 
 /// Error of all equations together, in percent of the measurements.
-pub(super) fn equations(observations: &Observations, parameters: &[f64]) -> f64 {
-    let errors: Vec<Squares> = observations
-        .blocks
-        .iter()
-        .map(|block| Squares::of(block, parameters))
-        .collect();
+pub(super) fn equations(evidence: &Evidence, parameters: &[f64]) -> f64 {
+    let errors = Squares::of(evidence, parameters);
     Squares::sum(&errors).rel_pct()
 }
 
@@ -55,13 +47,18 @@ struct Squares {
 }
 
 impl Squares {
-    fn of(block: &Equations, parameters: &[f64]) -> Self {
-        let square = |values: &[f64]| values.iter().map(|x| x * x).sum();
-        Squares {
-            rows: block.rows,
-            residual: square(&block.residual(parameters)),
-            measured: block.y.as_deref().map_or(0.0, square),
-        }
+    /// Of each joint.
+    fn of(evidence: &Evidence, parameters: &[f64]) -> Vec<Self> {
+        let residuals = evidence.residual_squares(parameters);
+        let measured = evidence.residual_squares(&[]);
+        let total = |of: &[Vec<f64>], joint: usize| of.iter().map(|block| block[joint]).sum();
+        let rows = evidence.joint_rows().into_iter().enumerate();
+        rows.map(|(joint, rows)| Squares {
+            rows,
+            residual: total(&residuals, joint),
+            measured: total(&measured, joint),
+        })
+        .collect()
     }
 
     fn sum(all: &[Squares]) -> Self {

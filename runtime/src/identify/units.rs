@@ -3,6 +3,7 @@
 
 use super::{Options, Plan, score};
 use crate::estimate::estimate;
+use crate::evidence::{Cut, Evidence};
 use crate::log::{Companion, Recording};
 use crate::model::{IdentificationModel, JointKind};
 use crate::observe::{ModelKind, Motion, observe};
@@ -199,7 +200,8 @@ impl Trial<'_> {
         let motion = Motion::trimmed(&log, self.model.joints().len(), &plan.filtering).ok()?;
         let observed = observe(self.model, ModelKind::Explicit, &motion, &plan.filtering).ok()?;
         let found = estimate(&observed.blocks, np, plan.weights).ok()?;
-        let fit = score::torque(self.model, &observed, &found.solution);
+        let evidence = Evidence::from_observations(self.model, &observed, &[], Cut::Blocks(1));
+        let fit = score::torque(self.model, &evidence.ok()?, &found.solution);
         let shares = fit.joints.iter().map(|joint| joint.rel_pct);
         let known = shares.filter(|share| share.is_finite());
         Some(known.map(|share| share.max(1e-6).ln()).sum())

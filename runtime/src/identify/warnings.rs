@@ -2,7 +2,7 @@
 
 use super::Plan;
 use crate::estimate::{Dependency, Estimate};
-use crate::log::Recording;
+use crate::log::Samples;
 use crate::model::IdentificationModel;
 use crate::observe::ModelKind;
 use crate::report::ModelResult;
@@ -18,30 +18,38 @@ const CONTRADICTED: f64 = 3.0;
 const LONGEST_LIST: usize = 12;
 
 /// Warnings of the logs themselves, and of logs that do not go together.
-pub(super) fn of_logs(
+pub(super) fn of_logs<L: Samples>(
     model: &dyn IdentificationModel,
-    train: &[Recording],
-    validate: &[Recording],
+    train: &[L],
+    validate: &[L],
     plan: &Plan,
 ) -> Vec<String> {
     let alone = train.len() + validate.len() == 1;
-    let named = |log: &Recording, warning: &String| match alone || warning.contains(&log.name) {
+    let named = |log: &L, warning: &String| match alone || warning.contains(log.name()) {
         true => warning.clone(),
-        false => format!("{}: {warning}", log.name),
+        false => format!("{}: {warning}", log.name()),
     };
     let all = train.iter().chain(validate);
     let mut warnings: Vec<String> = all
-        .flat_map(|log| log.warnings.iter().map(move |warning| named(log, warning)))
+        .flat_map(|log| {
+            log.warnings()
+                .iter()
+                .map(move |warning| named(log, warning))
+        })
         .collect();
     let Some(first) = train.first() else {
         return warnings;
     };
     for log in train.iter().chain(validate) {
-        if (log.rate_hz / first.rate_hz - 1.0).abs() > 1e-6 {
+        if (log.rate_hz() / first.rate_hz() - 1.0).abs() > 1e-6 {
             warnings.push(format!(
                 "{} is sampled at {} Hz and {} at {} Hz; both are decimated by {}, so their \
                  parallel filters differ.",
-                log.name, log.rate_hz, first.name, first.rate_hz, plan.filtering.nd
+                log.name(),
+                log.rate_hz(),
+                first.name(),
+                first.rate_hz(),
+                plan.filtering.nd
             ));
         }
     }

@@ -7,6 +7,7 @@
 //!
 //! This module owns every file format of measured data; filters and models begin at [`Recording`].
 
+mod any;
 mod checks;
 mod clipped;
 pub mod closed_loop;
@@ -29,6 +30,7 @@ mod rate;
 mod read;
 pub mod recording;
 mod resample;
+mod samples;
 mod source;
 pub mod spec;
 mod speed;
@@ -41,6 +43,7 @@ mod write;
 #[cfg(test)]
 mod tests;
 
+pub use any::Log;
 pub use closed_loop::{Controller, Feedforward, Fourier, Law, Reference, Start};
 pub use companion::{ColumnSource, Companion};
 pub use error::{LogError, Problem};
@@ -48,5 +51,7 @@ pub use long::{LongLog, is_long, read_long};
 pub use read::{ReadOptions, read};
 pub use recording::Recording;
 pub use resample::onto_stamps;
+pub use samples::Samples;
+pub(crate) use samples::within;
 pub use spec::{LogSpec, Part, SpecError};
 pub use write::write;

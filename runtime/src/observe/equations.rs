@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::{Filtering, ModelKind, Motion, ObserveError, decimated};
 use crate::model::IdentificationModel;
-use crate::signal::Decimator;
+use crate::signal::{Decimator, SignalError};
 
 /// Equations that share one error level: those of a joint, or the power balance.
 #[derive(Clone, Debug, PartialEq)]
@@ -42,20 +42,31 @@ pub fn observe(
     let fail = ObserveError::filter(&motion.log, "parallel filter");
     let decimator = filtering.decimator(motion.rate_hz).map_err(&fail)?;
     let kept = decimator.kept(motion.len);
-    let keep = rows_believed(motion, filtering, &kept)?;
-    let mut blocks = empty_blocks(model, kind, keep.len());
+    let believed = rows_believed(motion, filtering, &kept)?;
+    let kept = pick(&kept, &believed);
+    equations_at(model, kind, motion, &decimator, &kept).map_err(&fail)
+}
+
+/// The equations at the samples `kept` of a motion.
+pub(super) fn equations_at(
+    model: &dyn IdentificationModel,
+    kind: ModelKind,
+    motion: &Motion,
+    decimator: &Decimator,
+    kept: &[usize],
+) -> Result<Observations, SignalError> {
+    let mut blocks = empty_blocks(model, kind, kept.len());
     for &term in kind.terms() {
-        let signals = decimated(model, term, motion, &decimator).map_err(&fail)?;
+        let signals = decimated(model, term, motion, decimator, kept)?;
         for entry in model.pattern(term.0).entries.iter() {
-            let Some(block) = blocks.get_mut(entry.row) else {
-                continue;
-            };
-            block.add(entry.column, &pick(&signals[entry.signal], &keep));
+            if let Some(block) = blocks.get_mut(entry.row) {
+                block.add(entry.column, &signals[entry.signal]);
+            }
         }
     }
-    if let Some(y) = measurements(kind, motion, &decimator).map_err(&fail)? {
+    if let Some(y) = measurements(kind, motion, decimator, kept)? {
         for (block, y) in blocks.iter_mut().zip(y) {
-            block.y = Some(pick(&y, &keep));
+            block.y = Some(y);
         }
     }
     Ok(Observations {
@@ -65,6 +76,14 @@ pub fn observe(
 }
 
 impl Observations {
+    /// No equations of a model, with the columns that they would see.
+    pub fn none(model: &dyn IdentificationModel, kind: ModelKind) -> Self {
+        Observations {
+            model: kind,
+            blocks: empty_blocks(model, kind, 0),
+        }
+    }
+
     /// Appends the equations of another log.
     pub fn append(&mut self, other: &Observations) {
         for (block, more) in self.blocks.iter_mut().zip(&other.blocks) {
@@ -137,7 +156,7 @@ pub(super) fn rows_believed(
     kept: &[usize],
 ) -> Result<Vec<usize>, ObserveError> {
     let within = rows_kept(&motion.log, kept.len(), filtering.cut_after())?;
-    let doubtful = doubtful(motion, filtering);
+    let doubtful = touched(&motion.doubtful, filtering, motion.rate_hz);
     let believed = |row: &usize| doubtful.iter().all(|range| !range.contains(&kept[*row]));
     let rows: Vec<usize> = within.filter(believed).collect();
     match rows.is_empty() {
@@ -148,23 +167,28 @@ pub(super) fn rows_believed(
     }
 }
 
-pub(super) fn pick(signal: &[f64], keep: &[usize]) -> Vec<f64> {
+pub(super) fn pick<T: Copy>(signal: &[T], keep: &[usize]) -> Vec<T> {
     keep.iter().map(|&row| signal[row]).collect()
 }
 
-/// The samples that doubtful ones reach through the filters; short bridges leave no trace.
-fn doubtful(motion: &Motion, filtering: &Filtering) -> Vec<Range<usize>> {
-    let (reach, short) = (
-        filtering.reach(motion.rate_hz),
-        filtering.bridgeable(motion.rate_hz),
-    );
-    let long = motion.doubtful.iter().filter(|range| range.len() > short);
+/// The samples that `doubtful` ones reach through the filters; short bridges leave no trace.
+pub(super) fn touched(
+    doubtful: &[Range<usize>],
+    filtering: &Filtering,
+    rate_hz: f64,
+) -> Vec<Range<usize>> {
+    let (reach, short) = (filtering.reach(rate_hz), filtering.bridgeable(rate_hz));
+    let long = doubtful.iter().filter(|range| range.len() > short);
     long.map(|range| range.start.saturating_sub(reach)..range.end.saturating_add(reach))
         .collect()
 }
 
 /// The decimated rows that remain after cutting `cut` at either end.
-fn rows_kept(log: &str, rows: usize, cut: usize) -> Result<std::ops::Range<usize>, ObserveError> {
+pub(super) fn rows_kept(
+    log: &str,
+    rows: usize,
+    cut: usize,
+) -> Result<std::ops::Range<usize>, ObserveError> {
     match cut.saturating_mul(2) {
         both if both < rows => Ok(cut..rows - cut),
         both => Err(ObserveError::NothingLeft {
@@ -177,7 +201,11 @@ fn rows_kept(log: &str, rows: usize, cut: usize) -> Result<std::ops::Range<usize
 }
 
 /// Blocks of zeros with the columns that each joint can see in any term of the model.
-fn empty_blocks(model: &dyn IdentificationModel, kind: ModelKind, rows: usize) -> Vec<Equations> {
+pub(super) fn empty_blocks(
+    model: &dyn IdentificationModel,
+    kind: ModelKind,
+    rows: usize,
+) -> Vec<Equations> {
     let count = if kind == ModelKind::Power {
         1
     } else {
@@ -212,11 +240,11 @@ fn measurements(
     kind: ModelKind,
     motion: &Motion,
     decimator: &Decimator,
-) -> Result<Option<Vec<Vec<f64>>>, crate::signal::SignalError> {
+    kept: &[usize],
+) -> Result<Option<Vec<Vec<f64>>>, SignalError> {
     let Some(tau) = &motion.tau else {
         return Ok(None);
     };
-    let kept = decimator.kept(motion.len);
     let power: Vec<Vec<f64>>;
     let measured = match kind {
         ModelKind::Power => {
@@ -229,10 +257,10 @@ fn measurements(
         }
         ModelKind::Explicit | ModelKind::Implicit => tau,
     };
-    decimator.values(measured.as_slice(), &kept).map(Some)
+    decimator.values(measured.as_slice(), kept).map(Some)
 }
 
 /// Power of all motors at sample `i`, W.
-fn motor_power(tau: &[Vec<f64>], qd: &[Vec<f64>], i: usize) -> f64 {
+pub(super) fn motor_power(tau: &[Vec<f64>], qd: &[Vec<f64>], i: usize) -> f64 {
     tau.iter().zip(qd).map(|(tau, qd)| tau[i] * qd[i]).sum()
 }

@@ -5,6 +5,14 @@ use crate::signal::SignalError;
 /// Why a log cannot be turned into observations. `log` is the recording's name.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ObserveError {
+    /// Samples of a log that stays on disk cannot be read again.
+    #[error("{log}: its samples cannot be read again: {message}")]
+    Unreadable {
+        /// Name of the log.
+        log: String,
+        /// What the reader said.
+        message: String,
+    },
     /// Every row of W lies near samples that cannot be believed.
     #[error(
         "{log}: no equation is left, since every one lies near samples that cannot be believed \

@@ -5,13 +5,16 @@
 //! decimates them in parallel and spreads them over the equations of each joint. The torque goes
 //! into Y only: W is a function of the motion alone.
 
+mod course;
 mod equations;
 mod error;
 mod filtering;
 mod motion;
 mod regressor;
+mod stretch;
 mod torque;
 
+pub(crate) use course::Course;
 pub use equations::{Equations, Observations, observe};
 pub use error::ObserveError;
 pub use filtering::Filtering;
@@ -19,6 +22,7 @@ pub(crate) use motion::rests;
 pub use motion::{Motion, check, check_torque};
 pub(crate) use regressor::contract;
 pub use regressor::decimated;
+pub(crate) use stretch::stretch;
 pub use torque::{Torque, filtered_torque};
 
 use serde::Serialize;

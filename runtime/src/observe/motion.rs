@@ -3,13 +3,13 @@
 use std::ops::Range;
 
 use super::{Filtering, ObserveError};
-use crate::log::Recording;
+use crate::log::{Recording, within};
 use crate::settings::Velocity;
 use crate::signal::central_difference;
 
 /// A joint whose position stays within this range, rad or m, is at rest: its velocity would be
 /// nothing but sensor noise, and the sign of it a coin toss.
-const REST: f64 = 1e-5;
+pub(super) const REST: f64 = 1e-5;
 
 /// Joint states along a log at its full rate, filtered without phase shift (Gautier 1996,
 /// section 6.2), one series per joint.
@@ -61,6 +61,16 @@ impl Motion {
         filtering: &Filtering,
     ) -> Result<Self, ObserveError> {
         check(recording, joints)?;
+        let mut motion = Motion::filtered(recording, filtering)?;
+        motion.hold(&resting(&recording.q));
+        Ok(motion)
+    }
+
+    /// Filters and differentiates a checked recording, or a window of one.
+    pub(super) fn filtered(
+        recording: &Recording,
+        filtering: &Filtering,
+    ) -> Result<Self, ObserveError> {
         let rate_hz = recording.rate_hz;
         let fail = ObserveError::filter(&recording.name, "prefilter");
         let prefilter = filtering.prefilter(rate_hz).map_err(&fail)?;
@@ -81,7 +91,7 @@ impl Motion {
         };
         let (log, len) = (recording.name.clone(), recording.len);
         let qdd = derivatives(&qd, rate_hz);
-        let mut motion = Motion {
+        Ok(Motion {
             log,
             rate_hz,
             len,
@@ -91,13 +101,11 @@ impl Motion {
             tau,
             doubtful: recording.doubtful.clone(),
             resting: Vec::new(),
-        };
-        motion.hold_resting_joints(&recording.q);
-        Ok(motion)
+        })
     }
 
     /// The motion without its first `start` and last `end` samples.
-    fn cut(mut self, (start, end): (usize, usize)) -> Result<Self, ObserveError> {
+    fn cut(self, (start, end): (usize, usize)) -> Result<Self, ObserveError> {
         let cut = start.saturating_add(end);
         if cut >= self.len {
             let (log, has) = (self.log, self.len);
@@ -109,31 +117,39 @@ impl Motion {
             });
         }
         let keep = start..self.len - end;
-        self.len = keep.len();
-        let shifted = |i: usize| i.saturating_sub(keep.start).min(self.len);
-        let doubtful = self
-            .doubtful
-            .iter()
-            .map(|range| shifted(range.start)..shifted(range.end));
-        self.doubtful = doubtful.filter(|range| !range.is_empty()).collect();
-        let series = self.q.iter_mut().chain(&mut self.qd).chain(&mut self.qdd);
-        for values in series.chain(self.tau.iter_mut().flatten()) {
-            *values = values[keep.clone()].to_vec();
-        }
-        Ok(self)
+        Ok(self.only(keep))
     }
 
-    fn hold_resting_joints(&mut self, raw: &[Vec<f64>]) {
-        for (joint, series) in raw.iter().enumerate() {
-            if rests(series) {
-                let mean = series.iter().sum::<f64>() / series.len() as f64;
-                self.q[joint].fill(mean);
-                self.qd[joint].fill(0.0);
-                self.qdd[joint].fill(0.0);
-                self.resting.push(joint);
-            }
+    /// The samples `keep` of the motion.
+    pub(super) fn only(mut self, keep: Range<usize>) -> Self {
+        self.len = keep.len();
+        self.doubtful = within(&self.doubtful, &keep);
+        let series = self.q.iter_mut().chain(&mut self.qd).chain(&mut self.qdd);
+        for values in series.chain(self.tau.iter_mut().flatten()) {
+            values.truncate(keep.end);
+            values.drain(..keep.start);
+        }
+        self
+    }
+
+    /// Holds joints, counted from 0, at positions, rad or m.
+    pub(super) fn hold(&mut self, resting: &[(usize, f64)]) {
+        for &(joint, position) in resting {
+            self.q[joint].fill(position);
+            self.qd[joint].fill(0.0);
+            self.qdd[joint].fill(0.0);
+            self.resting.push(joint);
         }
     }
+}
+
+/// The joints that never move, and their mean positions.
+fn resting(q: &[Vec<f64>]) -> Vec<(usize, f64)> {
+    let at_rest = q.iter().enumerate().filter(|(_, series)| rests(series));
+    let mean = |series: &Vec<f64>| series.iter().sum::<f64>() / series.len() as f64;
+    at_rest
+        .map(|(joint, series)| (joint, mean(series)))
+        .collect()
 }
 
 fn derivatives(series: &[Vec<f64>], rate_hz: f64) -> Vec<Vec<f64>> {

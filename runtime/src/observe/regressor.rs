@@ -12,8 +12,8 @@ use crate::signal::{BLOCK, Decimator, Planar, SignalError};
 /// grow with the log times the number of signals.
 const WINDOW: usize = 16_384;
 
-/// The distinct signals of an output along a motion, low-passed in parallel and decimated: one
-/// series of kept samples per signal.
+/// The distinct signals of an output along a motion, low-passed in parallel, at the samples `kept`:
+/// one series per signal.
 ///
 /// A long log is worked off in windows that overlap by what the low-pass remembers; the result
 /// is that of the whole log to rounding.
@@ -25,8 +25,8 @@ pub fn decimated(
     (output, treatment): (Output, Treatment),
     motion: &Motion,
     decimator: &Decimator,
+    kept: &[usize],
 ) -> Result<Vec<Vec<f64>>, SignalError> {
-    let kept = decimator.kept(motion.len);
     let memory = decimator.memory();
     let mut rows = vec![Vec::with_capacity(kept.len()); model.pattern(output).signals];
     for part in windows(motion.len, WINDOW.max(8 * memory)) {

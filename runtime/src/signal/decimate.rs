@@ -3,7 +3,9 @@
 use super::SignalError;
 use super::design::chebyshev1;
 use super::difference::differentiate;
+use super::modal::Modes;
 use super::planar::{LANES, Signals};
+use super::running::Running;
 use super::zero_phase::ZeroPhase;
 use crate::settings::Edges;
 
@@ -25,6 +27,7 @@ const LARGEST_RATIO: usize = 10_001;
 #[derive(Clone, Debug)]
 pub struct Decimator {
     filter: Option<ZeroPhase>,
+    modes: Option<Modes>,
     ratio: usize,
     edges: Edges,
     rate_hz: f64,
@@ -36,7 +39,7 @@ impl Decimator {
     /// # Errors
     /// [`SignalError::Ratio`] if the ratio is zero or beyond reason.
     pub fn new(ratio: usize, rate_hz: f64, edges: Edges) -> Result<Self, SignalError> {
-        let filter = match ratio {
+        let cascade = match ratio {
             1 => None,
             0 | LARGEST_RATIO.. => {
                 return Err(SignalError::Ratio {
@@ -44,13 +47,11 @@ impl Decimator {
                     largest: LARGEST_RATIO - 1,
                 });
             }
-            _ => {
-                let cascade = chebyshev1(ORDER, RIPPLE_DB, CUT_OFF / ratio as f64, 2.0)?;
-                Some(ZeroPhase::new(cascade, ORDER, edges))
-            }
+            _ => Some(chebyshev1(ORDER, RIPPLE_DB, CUT_OFF / ratio as f64, 2.0)?),
         };
         Ok(Decimator {
-            filter,
+            modes: cascade.as_ref().and_then(Modes::of),
+            filter: cascade.map(|cascade| ZeroPhase::new(cascade, ORDER, edges)),
             ratio,
             edges,
             rate_hz,
@@ -75,6 +76,23 @@ impl Decimator {
     /// Samples away from an edge after which the low-pass has forgotten it, to rounding.
     pub fn memory(&self) -> usize {
         self.filter.as_ref().map_or(1, ZeroPhase::memory)
+    }
+
+    /// Decimation ratio.
+    pub fn ratio(&self) -> usize {
+        self.ratio
+    }
+
+    /// Rows away from an edge after which the low-pass has forgotten it, to rounding.
+    pub fn look_ahead(&self) -> usize {
+        self.memory().div_ceil(self.ratio) + 1
+    }
+
+    /// The same filter and decimation for `signals` signals whose samples come chunk by chunk, or
+    /// for their derivatives.
+    pub fn running(&self, signals: usize, derivatives: bool) -> Running {
+        let rate_hz = derivatives.then_some(self.rate_hz);
+        Running::new(self.modes.as_ref(), self.ratio, signals, rate_hz)
     }
 
     /// The low-passed signals at the samples `kept`.

@@ -10,9 +10,11 @@ mod cascade;
 mod decimate;
 mod design;
 mod difference;
+mod modal;
 mod planar;
 #[cfg(test)]
 mod reference;
+mod running;
 mod whiteness;
 mod zero_phase;
 
@@ -22,6 +24,7 @@ pub use decimate::Decimator;
 pub use design::{butterworth, chebyshev1};
 pub use difference::central_difference;
 pub use planar::{BLOCK, LANES, Planar, Signals};
+pub use running::Running;
 pub(crate) use whiteness::{autocorrelation, density};
 pub use zero_phase::ZeroPhase;
 

@@ -93,7 +93,7 @@ fn a_log_of_another_robot_is_an_error() {
     };
     assert_eq!(error, joints.into());
     assert_eq!(
-        identify(&scara(), &[], &[], &options(), &()).unwrap_err(),
+        identify::<Recording>(&scara(), &[], &[], &options(), &()).unwrap_err(),
         IdentifyError::NoLogs
     );
 }

@@ -5,6 +5,7 @@ use std::ops::Range;
 use super::super::error::{Found, LogError};
 use super::super::recording::Recording;
 use super::super::resample;
+use super::super::samples::Samples;
 use super::LongLog;
 
 impl LongLog {
@@ -122,5 +123,31 @@ impl LongLog {
             resample::onto_grid(&stamps, &values, self.start, self.rate_hz, range.clone())
         };
         columns.map(|column| Ok(on_grid(kept(column)?))).collect()
+    }
+}
+
+impl Samples for LongLog {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn rate_hz(&self) -> f64 {
+        self.rate_hz
+    }
+
+    fn len(&self) -> usize {
+        self.len
+    }
+
+    fn doubtful(&self) -> &[Range<usize>] {
+        &self.doubtful
+    }
+
+    fn warnings(&self) -> &[String] {
+        &self.warnings
+    }
+
+    fn window(&self, range: Range<usize>) -> Result<Recording, LogError> {
+        LongLog::window(self, range)
     }
 }

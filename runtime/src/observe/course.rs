@@ -1,0 +1,203 @@
+//! A log on its way to equations, without ever being in memory as a whole.
+
+use std::ops::Range;
+
+use rayon::prelude::*;
+
+use super::equations::{rows_kept, touched};
+use super::motion::{Motion, REST};
+use super::{Filtering, ObserveError, check, check_torque};
+use crate::log::Samples;
+use crate::signal::{Decimator, ZeroPhase};
+
+/// Samples that are looked at together.
+pub(super) const WINDOW: usize = 8192;
+
+/// A log and the filters that run along it: its motion in windows, and where its decimated rows
+/// lie. Equal to [`Motion::trimmed`] of the whole log, to rounding.
+pub(crate) struct Course<'a> {
+    source: &'a dyn Samples,
+    filtering: &'a Filtering,
+    prefilter: ZeroPhase,
+    pub decimator: Decimator,
+    /// Joints that never move, counted from 0, and the positions they are held at.
+    resting: Vec<(usize, f64)>,
+    /// The samples between those cut off before the parallel filter.
+    within: Range<usize>,
+    /// The first sample that decimation keeps, counted in the whole log.
+    first: usize,
+    /// Number of decimated rows.
+    rows: usize,
+}
+
+impl<'a> Course<'a> {
+    /// Looks through a log once: checks it and finds the joints that rest.
+    ///
+    /// # Errors
+    /// Those of [`Motion::trimmed`] and [`check_torque`]; [`ObserveError::Unreadable`].
+    pub fn new(
+        source: &'a dyn Samples,
+        joints: usize,
+        filtering: &'a Filtering,
+    ) -> Result<Self, ObserveError> {
+        let (rate_hz, has) = (source.rate_hz(), source.len());
+        let fail = ObserveError::filter(source.name(), "prefilter");
+        let prefilter = filtering.prefilter(rate_hz).map_err(&fail)?;
+        let fail = ObserveError::filter(source.name(), "parallel filter");
+        let decimator = filtering.decimator(rate_hz).map_err(&fail)?;
+        let (start, end) = filtering.cut_before();
+        let cut = start.saturating_add(end);
+        if cut >= has {
+            return Err(ObserveError::NothingLeft {
+                log: source.name().to_owned(),
+                cut,
+                has,
+                unit: "samples",
+            });
+        }
+        let within = start..has - end;
+        let kept = decimator.kept(within.len());
+        Ok(Course {
+            source,
+            filtering,
+            prefilter,
+            decimator,
+            resting: resting(source, joints)?,
+            first: within.start + kept.first().copied().unwrap_or(0),
+            rows: kept.len(),
+            within,
+        })
+    }
+
+    /// Number of decimated rows, those at the edges included.
+    pub fn rows(&self) -> usize {
+        self.rows
+    }
+
+    /// Name of the log.
+    pub fn name(&self) -> &str {
+        self.source.name()
+    }
+
+    /// Joints that never move, counted from 0.
+    pub fn resting(&self) -> Vec<usize> {
+        self.resting.iter().map(|(joint, _)| *joint).collect()
+    }
+
+    /// The sample that a row stands at, counted in the whole log.
+    pub fn sample(&self, row: usize) -> usize {
+        self.first + row * self.decimator.ratio()
+    }
+
+    /// Where the edges of the log reach: this many rows at either end.
+    pub fn edge(&self) -> usize {
+        self.decimator.look_ahead()
+    }
+
+    /// The samples that all rows are made of.
+    pub fn samples(&self) -> Range<usize> {
+        self.within.clone()
+    }
+
+    /// The motion at some samples, counted in the whole log.
+    ///
+    /// # Errors
+    /// [`ObserveError::Unreadable`]; [`ObserveError::NoVelocity`]; [`ObserveError::Filter`].
+    pub fn motion(&self, range: Range<usize>) -> Result<Motion, ObserveError> {
+        // Two differences look two samples further than the prefilter.
+        let reach = self.prefilter.memory() + self.prefilter.extension() + 2;
+        let start = range.start.saturating_sub(reach);
+        let end = range.end.saturating_add(reach).min(self.source.len());
+        let recording = window(self.source, start..end)?;
+        let mut motion = Motion::filtered(&recording, self.filtering)?;
+        motion.hold(&self.resting);
+        Ok(motion.only(range.start - start..range.end.min(end) - start))
+    }
+
+    /// The rows that become equations, as ascending disjoint ranges: away from what is cut off
+    /// after the parallel filter and from samples that cannot be believed.
+    ///
+    /// # Errors
+    /// [`ObserveError::NothingLeft`], [`ObserveError::NothingBelieved`].
+    pub fn believed(&self) -> Result<Vec<Range<usize>>, ObserveError> {
+        let kept = rows_kept(self.name(), self.rows, self.filtering.cut_after())?;
+        let doubtful = crate::log::within(self.source.doubtful(), &self.within);
+        let touched = touched(&doubtful, self.filtering, self.source.rate_hz());
+        let ratio = self.decimator.ratio();
+        let offset = self.first - self.within.start;
+        let row = |sample: usize| sample.saturating_sub(offset).div_ceil(ratio);
+        let (mut believed, mut at) = (Vec::new(), kept.start);
+        for lost in touched.iter().map(|r| row(r.start)..row(r.end)) {
+            believed.push(at..lost.start.min(kept.end));
+            at = at.max(lost.end);
+        }
+        believed.push(at..kept.end);
+        believed.retain(|rows| rows.start < rows.end);
+        match believed.is_empty() {
+            true => Err(ObserveError::NothingBelieved {
+                log: self.name().to_owned(),
+            }),
+            false => Ok(believed),
+        }
+    }
+}
+
+/// A window of a log.
+fn window(
+    source: &dyn Samples,
+    range: Range<usize>,
+) -> Result<crate::log::Recording, ObserveError> {
+    source
+        .window(range)
+        .map_err(|error| ObserveError::Unreadable {
+            log: source.name().to_owned(),
+            message: error.to_string(),
+        })
+}
+
+/// What a look through a log finds of a joint.
+#[derive(Clone, Copy)]
+struct Extent {
+    low: f64,
+    high: f64,
+    sum: f64,
+}
+
+/// The joints that never move, and their mean positions; everything is checked on the way.
+fn resting(source: &dyn Samples, joints: usize) -> Result<Vec<(usize, f64)>, ObserveError> {
+    let len = source.len();
+    let starts: Vec<usize> = (0..len).step_by(WINDOW).collect();
+    let parts = starts.into_par_iter().map(|start| {
+        let recording = window(source, start..(start + WINDOW).min(len))?;
+        check(&recording, joints)?;
+        check_torque(&recording)?;
+        Ok(recording.q.iter().map(|q| extent(q)).collect())
+    });
+    let parts: Vec<Vec<Extent>> = parts.collect::<Result<_, ObserveError>>()?;
+    let of_joint = |joint: usize| {
+        let each = parts.iter().map(|part| part[joint]);
+        each.reduce(|a, b| Extent {
+            low: a.low.min(b.low),
+            high: a.high.max(b.high),
+            sum: a.sum + b.sum,
+        })
+    };
+    let extents = (0..joints).filter_map(|joint| Some((joint, of_joint(joint)?)));
+    let at_rest = extents.filter(|(_, extent)| extent.high - extent.low <= REST);
+    Ok(at_rest
+        .map(|(joint, extent)| (joint, extent.sum / len as f64))
+        .collect())
+}
+
+fn extent(q: &[f64]) -> Extent {
+    let nothing = Extent {
+        low: f64::INFINITY,
+        high: f64::NEG_INFINITY,
+        sum: 0.0,
+    };
+    q.iter().fold(nothing, |all, &q| Extent {
+        low: all.low.min(q),
+        high: all.high.max(q),
+        sum: all.sum + q,
+    })
+}

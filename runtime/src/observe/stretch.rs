@@ -1,0 +1,380 @@
+//! Rows of equations along a stretch of a log, handed on as soon as they are made: regressor,
+//! decimation and what follows share the cache, and W is nowhere written.
+
+use std::ops::Range;
+
+use super::course::{Course, WINDOW};
+use super::equations::{empty_blocks, equations_at, motor_power};
+use super::{ModelKind, Motion, ObserveError, Treatment};
+use crate::model::{IdentificationModel, Output, States};
+use crate::signal::Running;
+
+/// Samples that the regressor is evaluated on at once: its signals then stay in cache.
+const CHUNK: usize = 512;
+
+/// Rows that are handed on together, where the log is long enough: each time, the sums over the
+/// samples ahead are gone through again.
+const BATCH: usize = 192;
+
+/// Receives rows: those of a joint (0 for the power balance) in one of the models, planar: the
+/// columns that the joint can see, ascending, then the measurements.
+pub(crate) type Sink<'a> = dyn FnMut(ModelKind, usize, &[&[f64]]) + 'a;
+
+/// Hands the rows of some models on, in the order of time: the `believed` ones among `rows`.
+///
+/// # Errors
+/// Those of [`Course::motion`].
+pub(crate) fn stretch(
+    course: &Course<'_>,
+    model: &dyn IdentificationModel,
+    kinds: &[ModelKind],
+    rows: Range<usize>,
+    believed: &[Range<usize>],
+    sink: &mut Sink<'_>,
+) -> Result<(), ObserveError> {
+    // Inside, the row after the last row ahead is needed, and the sample after that.
+    let inner = course.edge()..course.rows().saturating_sub(course.edge() + 2);
+    let part = |rows: Range<usize>, inside: bool, sink: &mut Sink<'_>| match rows.is_empty() {
+        true => Ok(()),
+        false if inside => inside_rows(course, model, kinds, rows, believed, sink),
+        false => edge_rows(course, model, kinds, rows, believed, sink),
+    };
+    let (start, end) = (rows.start, rows.end);
+    if inner.is_empty() {
+        return part(rows, false, sink);
+    }
+    part(start..end.min(inner.start), false, sink)?;
+    part(start.max(inner.start)..end.min(inner.end), true, sink)?;
+    part(start.max(inner.end)..end, false, sink)
+}
+
+/// Rows that the edges of the log reach: as for a short log, from a motion with that edge.
+fn edge_rows(
+    course: &Course<'_>,
+    model: &dyn IdentificationModel,
+    kinds: &[ModelKind],
+    rows: Range<usize>,
+    believed: &[Range<usize>],
+    sink: &mut Sink<'_>,
+) -> Result<(), ObserveError> {
+    let whole = course.samples();
+    let far = course.decimator.memory();
+    let start = course
+        .sample(rows.start)
+        .saturating_sub(far)
+        .max(whole.start);
+    let end = (course.sample(rows.end - 1) + 1)
+        .saturating_add(far)
+        .min(whole.end);
+    let motion = course.motion(start..end)?;
+    let kept: Vec<usize> = overlaps(&rows, believed)
+        .flatten()
+        .map(|row| course.sample(row) - start)
+        .collect();
+    let fail = ObserveError::filter(course.name(), "parallel filter");
+    for &kind in kinds {
+        let made = equations_at(model, kind, &motion, &course.decimator, &kept).map_err(&fail)?;
+        for (joint, block) in made.blocks.iter().enumerate() {
+            let columns = (0..block.columns.len()).map(|k| block.column(k));
+            let all: Vec<&[f64]> = columns.chain(block.y.as_deref()).collect();
+            sink(kind, joint, &all);
+        }
+    }
+    Ok(())
+}
+
+/// Rows away from the edges, by running decimation.
+fn inside_rows(
+    course: &Course<'_>,
+    model: &dyn IdentificationModel,
+    kinds: &[ModelKind],
+    rows: Range<usize>,
+    believed: &[Range<usize>],
+    sink: &mut Sink<'_>,
+) -> Result<(), ObserveError> {
+    let ratio = course.decimator.ratio();
+    let edge = course.edge();
+    let last = rows.end + edge;
+    let per_window = (WINDOW / ratio).max(1);
+    let per_chunk = (CHUNK / ratio).max(1);
+    let mut stream = Stream::new(course, model, kinds, rows.start - edge);
+    let mut at = rows.start - edge;
+    while at < last {
+        let window = at..(at + per_window).min(last);
+        let motion = course.motion(course.sample(at)..course.sample(window.end) + 2)?;
+        while at < window.end {
+            let next = (at + per_chunk).min(window.end);
+            stream.follow(&motion, at - window.start, next - at);
+            at = next;
+            // The last rows have just as many after them as they need.
+            if at == last || stream.ready(edge) >= BATCH {
+                let wanted = stream.ready(edge);
+                stream.hand_on(wanted, &rows, believed, sink);
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The parts of ascending `ranges` inside `rows`.
+fn overlaps<'a>(
+    rows: &'a Range<usize>,
+    ranges: &'a [Range<usize>],
+) -> impl Iterator<Item = Range<usize>> + 'a {
+    let first = ranges.partition_point(|range| range.end <= rows.start);
+    let near = ranges[first..]
+        .iter()
+        .take_while(|range| range.start < rows.end);
+    near.map(|range| range.start.max(rows.start)..range.end.min(rows.end))
+        .filter(|range| !range.is_empty())
+}
+
+/// The signals of some models on their way through the parallel filter.
+struct Stream<'a> {
+    model: &'a dyn IdentificationModel,
+    ratio: usize,
+    /// The row that comes out next.
+    row: usize,
+    channels: Vec<Channel>,
+    blocks: Vec<Block>,
+    states: [Vec<f64>; 3],
+    samples: Vec<f64>,
+}
+
+/// What a channel's signals are made of.
+#[derive(Clone, Copy, PartialEq)]
+enum Content {
+    Regressor(Output, Treatment),
+    Torque,
+    MotorPower,
+}
+
+/// Signals of one kind, filtered together.
+struct Channel {
+    content: Content,
+    running: Running,
+    /// The rows that came out last, signal by signal.
+    out: Vec<f64>,
+}
+
+/// Where the columns of a joint's rows come from.
+struct Block {
+    kind: ModelKind,
+    joint: usize,
+    /// For each column the signals (channel, signal) that add up to it; the measurement is last.
+    columns: Vec<Vec<(usize, usize)>>,
+}
+
+impl<'a> Stream<'a> {
+    /// Begins at row `row`, which itself is lost.
+    fn new(
+        course: &Course<'_>,
+        model: &'a dyn IdentificationModel,
+        kinds: &[ModelKind],
+        row: usize,
+    ) -> Self {
+        let mut contents: Vec<Content> = Vec::new();
+        for &kind in kinds {
+            let terms = kind
+                .terms()
+                .iter()
+                .map(|term| Content::Regressor(term.0, term.1));
+            for content in terms.chain([measured(kind)]) {
+                if !contents.contains(&content) {
+                    contents.push(content);
+                }
+            }
+        }
+        let channel = |content: &Content| {
+            let rate = matches!(content, Content::Regressor(_, Treatment::Rate));
+            Channel {
+                content: *content,
+                running: course.decimator.running(signals(model, *content), rate),
+                out: Vec::new(),
+            }
+        };
+        Stream {
+            model,
+            ratio: course.decimator.ratio(),
+            row,
+            channels: contents.iter().map(channel).collect(),
+            blocks: kinds
+                .iter()
+                .flat_map(|&kind| blocks(model, kind, &contents))
+                .collect(),
+            states: Default::default(),
+            samples: Vec::new(),
+        }
+    }
+
+    /// Takes the next `rows` rows of a motion, which begins `start` rows before the last row.
+    fn follow(&mut self, motion: &Motion, start: usize, rows: usize) {
+        let samples = start * self.ratio..(start + rows) * self.ratio + 2;
+        for (to, from) in self
+            .states
+            .iter_mut()
+            .zip([&motion.q, &motion.qd, &motion.qdd])
+        {
+            to.clear();
+            from.iter()
+                .for_each(|joint| to.extend(&joint[samples.clone()]));
+        }
+        for channel in &mut self.channels {
+            let states = States {
+                len: samples.len(),
+                q: &self.states[0],
+                qd: &self.states[1],
+                qdd: &self.states[2],
+            };
+            let signals = signals(self.model, channel.content);
+            self.samples.resize(signals * samples.len(), 0.0);
+            fill(
+                self.model,
+                channel.content,
+                &states,
+                motion,
+                samples.start,
+                &mut self.samples,
+            );
+            channel.running.take(&self.samples, rows);
+        }
+    }
+
+    fn ready(&self, look_ahead: usize) -> usize {
+        self.channels
+            .first()
+            .map_or(0, |channel| channel.running.ready(look_ahead))
+    }
+
+    /// Takes `count` rows out and hands on the believed ones among `rows`.
+    fn hand_on(
+        &mut self,
+        count: usize,
+        rows: &Range<usize>,
+        believed: &[Range<usize>],
+        sink: &mut Sink<'_>,
+    ) {
+        for channel in &mut self.channels {
+            channel.running.give(count, &mut channel.out);
+        }
+        let out = self.row..self.row + count;
+        self.row = out.end;
+        let wanted = rows.start.max(out.start)..rows.end.min(out.end);
+        for part in overlaps(&wanted, believed) {
+            let part = part.start - out.start..part.end - out.start;
+            for block in &self.blocks {
+                block.hand_on(&self.channels, count, &part, sink);
+            }
+        }
+    }
+}
+
+impl Block {
+    /// Hands on the rows `part` of the `count` rows that came out.
+    fn hand_on(
+        &self,
+        channels: &[Channel],
+        count: usize,
+        part: &Range<usize>,
+        sink: &mut Sink<'_>,
+    ) {
+        let signal = |&(channel, signal): &(usize, usize)| {
+            &channels[channel].out[signal * count..][part.clone()]
+        };
+        let sum = |sources: &Vec<(usize, usize)>| -> Option<Vec<f64>> {
+            let (first, more) = sources.split_first()?;
+            let mut sum = signal(first).to_vec();
+            for source in more {
+                sum.iter_mut()
+                    .zip(signal(source))
+                    .for_each(|(sum, x)| *sum += x);
+            }
+            (!more.is_empty()).then_some(sum)
+        };
+        let sums: Vec<Option<Vec<f64>>> = self.columns.iter().map(sum).collect();
+        let columns = self
+            .columns
+            .iter()
+            .zip(&sums)
+            .map(|(sources, sum)| match sum {
+                Some(sum) => sum.as_slice(),
+                None => sources.first().map_or(&[][..], signal),
+            });
+        sink(self.kind, self.joint, &columns.collect::<Vec<_>>());
+    }
+}
+
+/// What the rows of a model measure.
+fn measured(kind: ModelKind) -> Content {
+    match kind {
+        ModelKind::Power => Content::MotorPower,
+        ModelKind::Explicit | ModelKind::Implicit => Content::Torque,
+    }
+}
+
+/// Number of signals.
+fn signals(model: &dyn IdentificationModel, content: Content) -> usize {
+    match content {
+        Content::Regressor(output, _) => model.pattern(output).signals,
+        Content::Torque => model.joints().len(),
+        Content::MotorPower => 1,
+    }
+}
+
+/// The blocks of a model, their columns traced to the channels of `contents`.
+fn blocks(model: &dyn IdentificationModel, kind: ModelKind, contents: &[Content]) -> Vec<Block> {
+    let place = |content: Content| contents.iter().position(|c| *c == content).unwrap_or(0);
+    let empty = empty_blocks(model, kind, 0);
+    let block = |(joint, equations): (usize, &super::Equations)| {
+        let sources = |&column: &usize| {
+            let of_term = |term: &(Output, Treatment)| {
+                let entries = model.pattern(term.0).entries.iter();
+                let channel = place(Content::Regressor(term.0, term.1));
+                entries
+                    .filter(move |e| e.row == joint && e.column == column)
+                    .map(move |e| (channel, e.signal))
+                    .collect::<Vec<_>>()
+            };
+            kind.terms().iter().flat_map(of_term).collect()
+        };
+        let measurement = vec![(place(measured(kind)), joint)];
+        Block {
+            kind,
+            joint,
+            columns: equations
+                .columns
+                .iter()
+                .map(sources)
+                .chain([measurement])
+                .collect(),
+        }
+    };
+    empty.iter().enumerate().map(block).collect()
+}
+
+/// Writes the signals of a channel along a chunk that begins at sample `start` of the motion.
+fn fill(
+    model: &dyn IdentificationModel,
+    content: Content,
+    states: &States<'_>,
+    motion: &Motion,
+    start: usize,
+    out: &mut [f64],
+) {
+    let none = Vec::new();
+    let tau = motion.tau.as_ref().unwrap_or(&none);
+    match content {
+        Content::Regressor(output, _) if !out.is_empty() => model.evaluate(output, states, out),
+        Content::Regressor(..) => {}
+        Content::Torque => {
+            for (out, tau) in out.chunks_mut(states.len).zip(tau) {
+                out.copy_from_slice(&tau[start..start + states.len]);
+            }
+        }
+        Content::MotorPower => {
+            for (i, out) in out.iter_mut().enumerate() {
+                *out = motor_power(tau, &motion.qd, start + i);
+            }
+        }
+    }
+}
