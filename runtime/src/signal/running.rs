@@ -184,6 +184,10 @@ impl Table {
     }
 
     /// \\( \sum_i p^{n-1-i} x_i \\) and \\( \sum_i p^i x_i \\).
+    #[expect(
+        clippy::needless_range_loop,
+        reason = "the index names a lane of several arrays"
+    )]
     #[inline(always)]
     fn sums(&self, x: &[f64]) -> (Lanes, Lanes) {
         let (mut even, mut odd) = ([0.0; 2 * PAIRS], [0.0; 2 * PAIRS]);
