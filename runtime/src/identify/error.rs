@@ -103,6 +103,18 @@ pub enum IdentifyError {
         /// Why.
         message: String,
     },
+    /// A log with more equations than can be weighted one by one.
+    #[error(
+        "{log}: weights for single rows need all equations in memory, and {samples} samples make \
+         too many; use --weights joint (bad samples are left out in any case), a larger decimation \
+         ratio (--nd), or a part of the log"
+    )]
+    TooLongForRobust {
+        /// Name of the log.
+        log: String,
+        /// Its samples.
+        samples: usize,
+    },
     /// Samples of a log that stays on disk cannot be read again.
     #[error("the samples of a log cannot be read again: {0}")]
     Unreadable(String),

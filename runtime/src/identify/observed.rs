@@ -12,6 +12,9 @@ use crate::settings::Weights;
 /// nothing that would look at single rows again is worth their memory (16 MB).
 const KEPT: usize = 2_000_000;
 
+/// Equations with more entries than this are not kept for the sake of weights either (400 MB).
+const KEPT_FOR_WEIGHTS: usize = 50_000_000;
+
 /// What all models that a plan needs make of one or several logs.
 pub(super) struct Observed {
     /// Names of the logs.
@@ -40,10 +43,15 @@ impl Observed {
         progress: &dyn Progress,
     ) -> Result<Self, IdentifyError> {
         let equations = log.len() / plan.filtering.nd.max(1) * model.joints().len();
-        let few = equations.saturating_mul(model.columns().len()) <= KEPT;
-        match few || plan.weights == Weights::Robust {
-            true => Observed::kept(model, log, plan, progress),
-            false => Observed::streamed(model, log, plan, progress),
+        let entries = equations.saturating_mul(model.columns().len());
+        match plan.weights {
+            Weights::Robust if entries > KEPT_FOR_WEIGHTS => Err(IdentifyError::TooLongForRobust {
+                log: log.name().to_owned(),
+                samples: log.len(),
+            }),
+            Weights::Robust => Observed::kept(model, log, plan, progress),
+            _ if entries <= KEPT => Observed::kept(model, log, plan, progress),
+            _ => Observed::streamed(model, log, plan, progress),
         }
     }
 

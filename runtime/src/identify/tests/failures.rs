@@ -1,12 +1,15 @@
 //! What cannot be identified has a name.
 
+use std::ops::Range;
+
 use super::hand_written::scara;
 use super::synthetic::{identified, log, motion, options, with_torque};
 use crate::estimate::EstimateError;
 use crate::identify::{IdentifyError, Options, identify};
-use crate::log::Recording;
+use crate::log::{LogError, Recording, Samples};
 use crate::observe::{ModelKind, ObserveError};
 use crate::report::terminal;
+use crate::settings::Weights;
 
 #[test]
 fn a_joint_that_never_moves_is_named() {
@@ -140,4 +143,54 @@ fn noise_of_sensors_is_no_motion() {
         matches!(error, IdentifyError::NothingMoves { .. }),
         "{error}"
     );
+}
+
+/// A log without end: the same samples again and again.
+struct Endless(Recording);
+
+impl Samples for Endless {
+    fn name(&self) -> &str {
+        &self.0.name
+    }
+
+    fn rate_hz(&self) -> f64 {
+        self.0.rate_hz
+    }
+
+    fn len(&self) -> usize {
+        1_000_000_000
+    }
+
+    fn doubtful(&self) -> &[Range<usize>] {
+        &[]
+    }
+
+    fn warnings(&self) -> &[String] {
+        &[]
+    }
+
+    fn window(&self, range: Range<usize>) -> Result<Recording, LogError> {
+        let start = range.start % (self.0.len / 2);
+        self.0
+            .window(start..start + range.len().min(self.0.len / 2))
+    }
+}
+
+#[test]
+fn a_log_too_long_to_weight_row_by_row_is_refused() {
+    let log = Endless(with_torque(&scara(), motion("endless.csv", 0.0, 80_000)));
+    let mut choices = options();
+    choices.weights = Some(Weights::Robust);
+    let error = identify(&scara(), &[log], &[], &choices, &()).unwrap_err();
+    assert!(
+        matches!(
+            &error,
+            IdentifyError::TooLongForRobust {
+                samples: 1_000_000_000,
+                ..
+            }
+        ),
+        "{error}"
+    );
+    assert!(error.to_string().contains("--weights joint"));
 }
