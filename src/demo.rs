@@ -136,6 +136,7 @@ fn inverse_dynamics(
         q: &motion.q,
         qd: &motion.qd,
         qdd: &motion.qdd,
+        slip: &[],
     };
     model.evaluate(Output::Explicit, &states, &mut signals);
     let mut tau = vec![vec![0.0; motion.len]; model.joints().len()];

@@ -11,7 +11,8 @@ use idim_codegen::mechanism;
 use idim_codegen::robot::{self, Robot};
 use idim_runtime::knowledge::{Knowledge, Term};
 use idim_runtime::model::{
-    Column, ColumnKind, Entry, IdentificationModel, Joint, JointKind, Output, Pattern, States,
+    Column, ColumnKind, Entry, IdentificationModel, Joint, JointKind, Output, Pattern, Presliding,
+    States,
 };
 use idim_runtime::settings::{Drives, Edges, Freedom, Settings, Velocity, Weights};
 
@@ -30,6 +31,7 @@ pub struct Interpreter {
     columns: Vec<Column>,
     settings: Settings,
     knowledge: Knowledge,
+    presliding: Vec<Presliding>,
     outputs: [Compiled; 5],
 }
 
@@ -43,6 +45,7 @@ impl Interpreter {
             columns: robot.base.parameters.iter().map(column).collect(),
             settings: settings(robot),
             knowledge: knowledge(robot),
+            presliding: presliding(robot),
             outputs: robot::Output::ALL.map(compiled),
         }
     }
@@ -78,11 +81,25 @@ impl IdentificationModel for Interpreter {
     fn knowledge(&self) -> &Knowledge {
         &self.knowledge
     }
+    fn presliding(&self) -> &[Presliding] {
+        &self.presliding
+    }
     fn evaluate(&self, output: Output, states: &States<'_>, signals: &mut [f64]) {
-        let States { len, q, qd, qdd } = *states;
-        self.output(output)
-            .tape
-            .run(&Batch { len, q, qd, qdd }, signals);
+        let States {
+            len,
+            q,
+            qd,
+            qdd,
+            slip,
+        } = *states;
+        let batch = Batch {
+            len,
+            q,
+            qd,
+            qdd,
+            slip,
+        };
+        self.output(output).tape.run(&batch, signals);
     }
 }
 
@@ -128,6 +145,11 @@ fn column(parameter: &idim_codegen::base::BaseParameter) -> Column {
         meaning: Cow::Owned(parameter.meaning.clone()),
         relation: Cow::Owned(parameter.relation_text()),
     }
+}
+
+fn presliding(robot: &Robot) -> Vec<Presliding> {
+    let joints = robot.mechanism.presliding();
+    joints.map(|(joint, zs)| Presliding { joint, zs }).collect()
 }
 
 fn settings(robot: &Robot) -> Settings {

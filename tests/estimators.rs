@@ -402,8 +402,10 @@ fn load_of_the_ur10e_is_what_the_reference_found() {
     let part = |log: &str| text(&logs.join(log));
     let unloaded = part("20_02_10_30sec_12harm.csv.gz@#635..3510");
     let nominal = text(&folder.path().join("nominal.json"));
+    // The reference's model: viscous and Coulomb friction and an offset.
+    let robot = text(&Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/baselines/ur10e.toml"));
     let train = [
-        "identify", "ur10e", &unloaded, "--models", "explicit", "--quiet",
+        "identify", &robot, &unloaded, "--models", "explicit", "--quiet",
     ];
     assert!(
         idim(&[&train[..], &["--json", &nominal]].concat())
@@ -413,7 +415,7 @@ fn load_of_the_ur10e_is_what_the_reference_found() {
     let loaded = part("20_02_19_14harm50secLoad.csv.gz@#308..5071");
     let result = json(&[
         "identify",
-        "ur10e",
+        &robot,
         &loaded,
         "--payload",
         "--nominal",

@@ -95,6 +95,20 @@ impl Lane for Dual {
             rate: (1.0 - value * value) * self.rate,
         }
     }
+    fn bell(self) -> Dual {
+        let value = (-self.value * self.value).exp();
+        Dual {
+            value,
+            rate: -2.0 * self.value * value * self.rate,
+        }
+    }
+    fn abs_power(self, p: f64) -> Dual {
+        let slope = p * self.value.abs().powf(p - 1.0) * Lane::sign(self.value);
+        Dual {
+            value: self.value.abs().powf(p),
+            rate: slope * self.rate,
+        }
+    }
 }
 
 const STATES: usize = 200;
@@ -234,6 +248,7 @@ fn assert_same(a: &dyn IdentificationModel, b: &dyn IdentificationModel) {
         q: &q,
         qd: &qd,
         qdd: &qdd,
+        slip: &[],
     };
     for output in Output::ALL {
         assert_eq!(a.pattern(output), b.pattern(output));
@@ -278,6 +293,7 @@ fn columns_in_another_order_carry_their_names_along() {
                 q: &q,
                 qd: &qd,
                 qdd: &qdd,
+                slip: &[],
             };
             model.evaluate(output, &states, &mut signals);
             let entries = model.pattern(output).entries.iter();

@@ -126,6 +126,7 @@ fn energy(model: &dyn IdentificationModel, parameters: &[f64], q: &[f64], qd: &[
             q,
             qd,
             qdd: &still,
+            slip: &[],
         },
         &mut signals,
     );

@@ -16,6 +16,23 @@ pub enum EffectKind {
     RotorInertia,
     /// Mechanical coupling of two wrist joints driven through each other (Staubli TX40).
     WristCoupling,
+    /// Viscous friction that differs between the directions, `FVA |qd|`.
+    ViscousAsymmetry,
+    /// Friction in excess of Coulomb's near rest, `FST sgn(qd) exp(-(qd / velocity)^2)`.
+    Stribeck,
+    /// The same of the drive behind a wrist coupling, along the sum of the two velocities.
+    WristStribeck,
+    /// Friction along a power of the speed, `FVN sgn(qd) |qd|^p`.
+    NonlinearViscous,
+    /// Friction that varies along a turn, `(FPS sin(N q) + FPC cos(N q)) sgn(qd)`.
+    PositionDependentFriction,
+    /// Torque that varies along a turn, `RS sin(N q) + RC cos(N q)`.
+    TorqueRipple,
+    /// Spring `K q`; where it is at rest is told by the offset.
+    Spring,
+    /// Friction that turns round over a displacement zs, `FP (z/zs - sgn(qd))` with Dahl's
+    /// `dz/dt = qd - |qd| z/zs`: what Coulomb friction lacks before the joint slides.
+    Presliding,
 }
 
 /// A shape parameter: it enters the torque non-linearly.
@@ -31,12 +48,20 @@ pub struct Shape {
 
 impl EffectKind {
     /// Every entry, in the order of the catalogue.
-    pub const ALL: [EffectKind; 5] = [
+    pub const ALL: [EffectKind; 13] = [
         EffectKind::Viscous,
         EffectKind::Coulomb,
         EffectKind::Offset,
         EffectKind::RotorInertia,
         EffectKind::WristCoupling,
+        EffectKind::ViscousAsymmetry,
+        EffectKind::Stribeck,
+        EffectKind::WristStribeck,
+        EffectKind::NonlinearViscous,
+        EffectKind::PositionDependentFriction,
+        EffectKind::TorqueRipple,
+        EffectKind::Spring,
+        EffectKind::Presliding,
     ];
 
     /// The name in descriptions and reports.
@@ -47,6 +72,14 @@ impl EffectKind {
             EffectKind::Offset => "offset",
             EffectKind::RotorInertia => "rotor_inertia",
             EffectKind::WristCoupling => "wrist_coupling",
+            EffectKind::ViscousAsymmetry => "viscous_asymmetry",
+            EffectKind::Stribeck => "stribeck",
+            EffectKind::WristStribeck => "wrist_stribeck",
+            EffectKind::NonlinearViscous => "nonlinear_viscous",
+            EffectKind::PositionDependentFriction => "position_dependent_friction",
+            EffectKind::TorqueRipple => "torque_ripple",
+            EffectKind::Spring => "spring",
+            EffectKind::Presliding => "presliding",
         }
     }
 
@@ -61,7 +94,7 @@ impl EffectKind {
     /// How many joints it takes to say where it acts.
     pub fn arity(self) -> usize {
         match self {
-            EffectKind::WristCoupling => 2,
+            EffectKind::WristCoupling | EffectKind::WristStribeck => 2,
             _ => 1,
         }
     }
@@ -73,6 +106,26 @@ impl EffectKind {
                 name: "smoothing",
                 default: 0.0,
                 range: (0.0, f64::MAX),
+            }],
+            EffectKind::Stribeck | EffectKind::WristStribeck => &[Shape {
+                name: "velocity",
+                default: 0.1,
+                range: (f64::MIN_POSITIVE, f64::MAX),
+            }],
+            EffectKind::NonlinearViscous => &[Shape {
+                name: "p",
+                default: 2.0,
+                range: (0.1, 10.0),
+            }],
+            EffectKind::PositionDependentFriction | EffectKind::TorqueRipple => &[Shape {
+                name: "N",
+                default: 1.0,
+                range: (f64::MIN_POSITIVE, f64::MAX),
+            }],
+            EffectKind::Presliding => &[Shape {
+                name: "zs",
+                default: 0.001,
+                range: (f64::MIN_POSITIVE, f64::MAX),
             }],
             _ => &[],
         }

@@ -259,6 +259,7 @@ fn evaluate(robot: &Robot, output: Output, sample: &Value) -> HashMap<(usize, us
         q: &q,
         qd: &qd,
         qdd: &qdd,
+        slip: &[],
     };
     Tape::new(&robot.graph, &values).run(&batch, &mut out);
     entries

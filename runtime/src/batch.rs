@@ -41,6 +41,17 @@ pub fn run<const N: usize>(
     signals: &mut [f64],
     mut evaluate: impl FnMut([Block; N], [Block; N], [Block; N], &mut Sink<'_>),
 ) {
+    run_with_slip(states, signals, |q, qd, qdd, _, sink| {
+        evaluate(q, qd, qdd, sink);
+    });
+}
+
+/// [`run`] for joints with a presliding state, which comes after the acceleration.
+pub fn run_with_slip<const N: usize>(
+    states: &States<'_>,
+    signals: &mut [f64],
+    mut evaluate: impl FnMut([Block; N], [Block; N], [Block; N], [Block; N], &mut Sink<'_>),
+) {
     let mut start = 0;
     while start < states.len {
         let count = WIDTH.min(states.len - start);
@@ -54,13 +65,17 @@ pub fn run<const N: usize>(
             })
         };
         let (q, qd, qdd) = (load(states.q), load(states.qd), load(states.qdd));
+        let slip = match states.slip.is_empty() {
+            true => qd.map(Lane::sign),
+            false => load(states.slip),
+        };
         let mut sink = Sink {
             signals,
             stride: states.len,
             start,
             count,
         };
-        evaluate(q, qd, qdd, &mut sink);
+        evaluate(q, qd, qdd, slip, &mut sink);
         start += count;
     }
 }

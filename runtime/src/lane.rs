@@ -21,6 +21,10 @@ pub trait Lane:
     fn abs(self) -> Self;
     /// Hyperbolic tangent.
     fn tanh(self) -> Self;
+    /// exp(-x^2).
+    fn bell(self) -> Self;
+    /// |x|^p for a constant p > 0.
+    fn abs_power(self, p: f64) -> Self;
 }
 
 macro_rules! scalar {
@@ -46,6 +50,12 @@ macro_rules! scalar {
             }
             fn tanh(self) -> Self {
                 <$t>::tanh(self)
+            }
+            fn bell(self) -> Self {
+                (-self * self).exp()
+            }
+            fn abs_power(self, p: f64) -> Self {
+                <$t>::abs(self).powf(p as $t)
             }
         }
     };
@@ -73,6 +83,12 @@ impl Lane for f64x4 {
         let values = self.to_array();
         f64x4::from(values.map(f64::tanh))
     }
+    fn bell(self) -> Self {
+        f64x4::from(self.to_array().map(Lane::bell))
+    }
+    fn abs_power(self, p: f64) -> Self {
+        f64x4::from(self.to_array().map(|x| x.abs_power(p)))
+    }
 }
 
 #[cfg(test)]
@@ -91,6 +107,8 @@ mod tests {
                 assert_eq!(Lane::sign(lanes).to_array()[i], Lane::sign(x));
                 assert_eq!(Lane::abs(lanes).to_array()[i], x.abs());
                 assert_eq!(Lane::tanh(lanes).to_array()[i], x.tanh());
+                assert_eq!(lanes.bell().to_array()[i], (-x * x).exp());
+                assert_eq!(lanes.abs_power(1.5).to_array()[i], x.abs().powf(1.5));
             }
         }
     }

@@ -129,6 +129,20 @@ pub struct States<'a> {
     pub qd: &'a [f64],
     /// Joint accelerations, `n * len`.
     pub qdd: &'a [f64],
+    /// Presliding states z/zs of [`IdentificationModel::presliding`], `n * len`, 0 for joints without
+    /// one; empty for joints that slide, where they are the signs of the velocities.
+    pub slip: &'a [f64],
+}
+
+/// A joint whose friction has a memory (Dahl 1968): before it slides, its contact yields
+/// elastically. \\( \dot z = \dot q - |\dot q| z / z_s \\), and friction follows \\( z / z_s \\)
+/// instead of the sign of the velocity.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Presliding {
+    /// Joint, counted from 0.
+    pub joint: usize,
+    /// \\( z_s \\), rad or m: the displacement over which friction turns round.
+    pub zs: f64,
 }
 
 /// A robot as the runtime sees it. Object safe: generated modules and the interpreter implement it.
@@ -151,6 +165,11 @@ pub trait IdentificationModel: Send + Sync {
     /// What the description knows of the parameters; nothing, unless the model says otherwise.
     fn knowledge(&self) -> &Knowledge {
         const { &Knowledge::NONE }
+    }
+
+    /// The joints whose friction has a memory, which the user of the model runs along the motion.
+    fn presliding(&self) -> &[Presliding] {
+        &[]
     }
 
     /// Evaluates every distinct signal of an output on a chunk of states.
@@ -178,6 +197,9 @@ impl<T: IdentificationModel + ?Sized> IdentificationModel for &T {
     }
     fn knowledge(&self) -> &Knowledge {
         (**self).knowledge()
+    }
+    fn presliding(&self) -> &[Presliding] {
+        (**self).presliding()
     }
     fn evaluate(&self, output: Output, states: &States<'_>, signals: &mut [f64]) {
         (**self).evaluate(output, states, signals);

@@ -48,6 +48,7 @@ pub struct States {
     q: Vec<f64>,
     qd: Vec<f64>,
     qdd: Vec<f64>,
+    slip: Vec<f64>,
 }
 
 impl States {
@@ -62,6 +63,7 @@ impl States {
             q: vec![],
             qd: vec![],
             qdd: vec![],
+            slip: vec![],
         };
         for joint in &mechanism.joints {
             let range = match joint.kind {
@@ -74,6 +76,8 @@ impl States {
                 states.qdd.push(5.0 * unit());
             }
         }
+        // Drawn last, so that the other numbers are the same with and without them.
+        states.slip = (0..mechanism.joints.len() * len).map(|_| unit()).collect();
         states
     }
 
@@ -84,6 +88,7 @@ impl States {
             q: &self.q,
             qd: &self.qd,
             qdd: &self.qdd,
+            slip: &self.slip,
         }
     }
 }

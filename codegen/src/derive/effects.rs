@@ -9,6 +9,8 @@ use crate::mechanism::{Effect, JointKind};
 
 use super::{Columns, ParameterKind, Standard};
 
+mod friction;
+
 /// The definition of one column.
 struct Torque {
     symbol: &'static str,
@@ -31,6 +33,7 @@ pub fn columns(graph: &mut Graph, kinds: &[JointKind], effect: &Effect) -> Vec<S
         EffectKind::Offset => offset(graph, kinds, effect),
         EffectKind::RotorInertia => rotor_inertia(kinds, effect),
         EffectKind::WristCoupling => wrist_coupling(graph, kinds, effect),
+        _ => friction::torques(graph, kinds, effect),
     };
     torques
         .into_iter()

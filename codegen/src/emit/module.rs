@@ -198,9 +198,43 @@ fn statics(robot: &Robot) -> TokenStream {
     }
 }
 
+/// The trait's list of joints with a presliding state; nothing for a robot without.
+fn presliding(robot: &Robot) -> TokenStream {
+    let joints: Vec<TokenStream> = robot
+        .mechanism
+        .presliding()
+        .map(|(joint, zs)| {
+            let joint = Literal::usize_unsuffixed(joint);
+            let zs = Literal::f64_unsuffixed(zs);
+            quote! { ::idim_runtime::model::Presliding { joint: #joint, zs: #zs } }
+        })
+        .collect();
+    if joints.is_empty() {
+        return TokenStream::new();
+    }
+    quote! {
+        fn presliding(&self) -> &[::idim_runtime::model::Presliding] {
+            &[#(#joints),*]
+        }
+    }
+}
+
 fn model(robot: &Robot) -> TokenStream {
     let name = &robot.mechanism.name;
     let doc = format!(" `{name}` as the runtime sees it.");
+    let memory = presliding(robot);
+    let (run, state, arguments) = match memory.is_empty() {
+        true => (
+            quote! { run },
+            quote! { State::new(q, qd, qdd) },
+            quote! { q, qd, qdd, sink },
+        ),
+        false => (
+            quote! { run_with_slip },
+            quote! { State::new(q, qd, qdd).with_slip(slip) },
+            quote! { q, qd, qdd, slip, sink },
+        ),
+    };
     quote! {
         #[doc = #doc]
         #[derive(Clone, Copy, Debug, Default)]
@@ -231,13 +265,14 @@ fn model(robot: &Robot) -> TokenStream {
             fn knowledge(&self) -> &Knowledge {
                 &KNOWLEDGE
             }
+            #memory
             fn evaluate(&self, output: Output, states: &States<'_>, signals: &mut [f64]) {
                 let zero = <Block as Lane>::splat(0.0);
                 let mut first = [[zero; PARAMETERS]; JOINTS];
                 let mut second = first;
                 let mut row = [[zero; PARAMETERS]; 1];
-                ::idim_runtime::batch::run(states, signals, |q, qd, qdd, sink| {
-                    let x = State::new(q, qd, qdd);
+                ::idim_runtime::batch::#run(states, signals, |#arguments| {
+                    let x = #state;
                     match output {
                         Output::Explicit => {
                             explicit(&x, &mut first);

@@ -64,6 +64,7 @@ pub fn state(robot: &Robot) -> TokenStream {
             }
         }
     }
+    let [slip_field, slip_value, with_slip] = slip(robot);
     quote! {
         #[doc = " A state of the robot, with the sines and cosines that all outputs share."]
         #[derive(Clone, Copy, Debug)]
@@ -74,6 +75,7 @@ pub fn state(robot: &Robot) -> TokenStream {
             pub qd: [T; JOINTS],
             #[doc = " Joint accelerations, rad/s^2 or m/s^2."]
             pub qdd: [T; JOINTS],
+            #slip_field
             #fields
         }
 
@@ -82,10 +84,33 @@ pub fn state(robot: &Robot) -> TokenStream {
             #[inline]
             pub fn new(q: [T; JOINTS], qd: [T; JOINTS], qdd: [T; JOINTS]) -> Self {
                 #bindings
-                State { q, qd, qdd, #names }
+                State { q, qd, qdd, #slip_value #names }
             }
+            #with_slip
         }
     }
+}
+
+/// The presliding states as a field, as the constructor sets them, and how a caller does; empty
+/// for a robot whose friction has no memory.
+fn slip(robot: &Robot) -> [TokenStream; 3] {
+    if robot.mechanism.presliding().next().is_none() {
+        return Default::default();
+    }
+    [
+        quote! {
+            #[doc = " Presliding states z/zs; the signs of the velocities in sliding."]
+            pub slip: [T; JOINTS],
+        },
+        quote! { slip: qd.map(Lane::sign), },
+        quote! {
+            #[doc = " With presliding states, dz/dt = qd - |qd| z/zs, instead of those of sliding."]
+            #[inline]
+            pub fn with_slip(self, slip: [T; JOINTS]) -> Self {
+                State { slip, ..self }
+            }
+        },
+    ]
 }
 
 fn angle_text(angle: &AngleSum) -> String {

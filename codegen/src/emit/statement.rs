@@ -139,6 +139,13 @@ impl<'a> Writer<'a> {
                     Function::Sign => quote! { #inner.sign() },
                     Function::Abs => quote! { #inner.abs() },
                     Function::Tanh => quote! { #inner.tanh() },
+                    Function::Bell => quote! { #inner.bell() },
+                    Function::Power(p) => {
+                        let p = Literal::f64_unsuffixed(f64::from_bits(p));
+                        quote! { #inner.abs_power(#p) }
+                    }
+                    Function::Sine => quote! { #inner.sin_cos().0 },
+                    Function::Cosine => quote! { #inner.sin_cos().1 },
                 };
                 (call, Level::Atom)
             }
@@ -171,7 +178,7 @@ impl<'a> Writer<'a> {
     }
 }
 
-/// `x.q[1]`, `x.qd[1]`, `x.qdd[1]`.
+/// `x.q[1]`, `x.qd[1]`, `x.qdd[1]`, `x.slip[1]`.
 fn input(input: Input) -> TokenStream {
     let place = |joint: usize| Literal::usize_unsuffixed(joint);
     match input {
@@ -186,6 +193,10 @@ fn input(input: Input) -> TokenStream {
         Input::Qdd(joint) => {
             let joint = place(joint);
             quote! { x.qdd[#joint] }
+        }
+        Input::Slip(joint) => {
+            let joint = place(joint);
+            quote! { x.slip[#joint] }
         }
     }
 }

@@ -58,9 +58,11 @@ pub enum Input {
     Qd(usize),
     /// Acceleration of a joint.
     Qdd(usize),
+    /// Presliding state of a joint, z/zs: between -1 and 1, the sign of the velocity in sliding.
+    Slip(usize),
 }
 
-/// Functions that are neither sums nor products.
+/// Functions that are neither sums nor products. Each is odd or even.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Function {
     /// Sign, 0 at 0 (odd).
@@ -69,6 +71,21 @@ pub enum Function {
     Abs,
     /// Hyperbolic tangent (odd).
     Tanh,
+    /// exp(-x^2) (even).
+    Bell,
+    /// |x|^p (even); p > 0 by its bits.
+    Power(u64),
+    /// Sine of any expression (odd); angles of joints are [`Node::Sin`].
+    Sine,
+    /// Cosine of any expression (even).
+    Cosine,
+}
+
+impl Function {
+    /// Whether f(-x) = -f(x); the others have f(-x) = f(x).
+    fn is_odd(self) -> bool {
+        matches!(self, Function::Sign | Function::Tanh | Function::Sine)
+    }
 }
 
 /// A node. Operands of sums and products are positive: signs are pulled out to the edges.
@@ -336,9 +353,12 @@ impl Graph {
     /// A function of `x`; the sign of the operand is pulled out.
     pub fn call(&mut self, function: Function, x: Expr) -> Expr {
         if self.is_zero(x) {
-            return self.zero;
+            return match function {
+                Function::Bell | Function::Cosine => self.one,
+                _ => self.zero,
+            };
         }
-        let odd = function != Function::Abs;
+        let odd = function.is_odd();
         self.intern(Node::Call(function, x.positive()))
             .signed(odd && x.negative)
     }
@@ -410,6 +430,16 @@ mod tests {
             graph.call(Function::Sign, -a),
             -graph.call(Function::Sign, a)
         );
-        assert_eq!(graph.call(Function::Abs, -a), graph.call(Function::Abs, a));
+        assert_eq!(
+            graph.call(Function::Sine, -a),
+            -graph.call(Function::Sine, a)
+        );
+        let power = Function::Power(1.5f64.to_bits());
+        for even in [Function::Abs, Function::Bell, Function::Cosine, power] {
+            assert_eq!(graph.call(even, -a), graph.call(even, a));
+        }
+        let zero = graph.zero();
+        assert_eq!(graph.call(Function::Bell, zero), graph.one());
+        assert_eq!(graph.call(power, zero), zero);
     }
 }

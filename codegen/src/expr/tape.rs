@@ -55,6 +55,8 @@ pub struct Batch<'a> {
     pub qd: &'a [f64],
     /// Accelerations.
     pub qdd: &'a [f64],
+    /// Presliding states; empty for those of sliding, the signs of the velocities.
+    pub slip: &'a [f64],
 }
 
 impl Tape {
@@ -108,6 +110,8 @@ impl Tape {
             Op::Add(a, b) => zip(&registers[a], &registers[b], width, |x, y| x + y),
             Op::Sub(a, b) => zip(&registers[a], &registers[b], width, |x, y| x - y),
             Op::Mul(a, b) => zip(&registers[a], &registers[b], width, |x, y| x * y),
+            Op::Call(Function::Sine, a) => lanes(registers[a], width, f64x4::sin),
+            Op::Call(Function::Cosine, a) => lanes(registers[a], width, f64x4::cos),
             Op::Call(function, a) => registers[a].map(|x| call(function, x)),
             Op::Store(a, output, sign) => {
                 let place = &mut out[output * batch.len + start..][..width];
@@ -141,6 +145,10 @@ fn read(batch: &Batch<'_>, input: Input, start: usize, width: usize) -> Register
         Input::Q(joint) => (batch.q, joint),
         Input::Qd(joint) => (batch.qd, joint),
         Input::Qdd(joint) => (batch.qdd, joint),
+        Input::Slip(joint) if batch.slip.is_empty() => {
+            return read(batch, Input::Qd(joint), start, width).map(|qd| call(Function::Sign, qd));
+        }
+        Input::Slip(joint) => (batch.slip, joint),
     };
     let mut register = [0.0; WIDTH];
     register[..width].copy_from_slice(&series[joint * batch.len + start..][..width]);
@@ -175,6 +183,10 @@ fn call(function: Function, x: f64) -> f64 {
         Function::Sign => 0.0 * x,
         Function::Abs => x.abs(),
         Function::Tanh => x.tanh(),
+        Function::Bell => (-x * x).exp(),
+        Function::Power(p) => x.abs().powf(f64::from_bits(p)),
+        Function::Sine => x.sin(),
+        Function::Cosine => x.cos(),
     }
 }
 
@@ -287,6 +299,7 @@ mod tests {
                 q: &q,
                 qd: &qd,
                 qdd: &qd,
+                slip: &[],
             },
             &mut out,
         );

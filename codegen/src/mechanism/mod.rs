@@ -109,6 +109,17 @@ impl Mechanism {
         }
     }
 
+    /// The joints whose friction has a memory, ascending, each with its z_s in rad or m.
+    pub fn presliding(&self) -> impl Iterator<Item = (usize, f64)> {
+        let zs = |joint: usize| {
+            let effect = self.effects.iter().find(|effect| {
+                effect.kind == EffectKind::Presliding && effect.joints.contains(&joint)
+            })?;
+            effect.shape.first().map(|&zs| (joint, zs))
+        };
+        (0..self.joints.len()).filter_map(zs)
+    }
+
     /// Indices of the joints from the base to `joint`, `joint` itself last.
     pub fn chain(&self, joint: usize) -> Vec<usize> {
         let mut chain = vec![joint];

@@ -66,7 +66,7 @@ impl Observed {
         check(&recording, model.joints().len())?;
         check_torque(&recording)?;
         progress.step(&format!("filtering {}", log.name()));
-        let motion = Motion::trimmed(&recording, model.joints().len(), &plan.filtering)?;
+        let motion = Motion::trimmed(&recording, model, &plan.filtering)?;
         let mut models = Vec::new();
         for kind in plan.observed() {
             progress.step(&format!("{} model along {}", kind.name(), log.name()));
@@ -93,7 +93,7 @@ impl Observed {
         progress: &dyn Progress,
     ) -> Result<Self, IdentifyError> {
         progress.step(&format!("looking through {}", log.name()));
-        let course = Course::new(log, model.joints().len(), &plan.filtering)?;
+        let course = Course::new(log, model, &plan.filtering)?;
         progress.step(&format!("reducing {} to evidence", log.name()));
         let gathered = |(kind, evidence)| Gathered {
             kind,

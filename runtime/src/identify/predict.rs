@@ -31,7 +31,7 @@ pub fn predict(
             needs,
         });
     }
-    let motion = Motion::full(recording, model.joints().len(), filtering)?;
+    let motion = Motion::full(recording, model, filtering)?;
     let product = |output| contract(model, output, &motion, parameters);
     Ok(match kind {
         ModelKind::Explicit | ModelKind::Power => product(Output::Explicit),

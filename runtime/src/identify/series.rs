@@ -30,7 +30,7 @@ pub fn series(
     result: &Identification,
 ) -> Result<LogSeries, IdentifyError> {
     check_torque(recording)?;
-    let motion = Motion::trimmed(recording, model.joints().len(), &result.filter)?;
+    let motion = Motion::trimmed(recording, model, &result.filter)?;
     let kinds: Vec<ModelKind> = result.models.iter().map(|model| model.name).collect();
     let torques = result
         .models

@@ -149,9 +149,9 @@ mod tests {
             let mut choices = options();
             (choices.edges, choices.nd, choices.trim) = (Some(edges), Some(nd), Some(trim));
             let plan = choices.resolve(&model, std::slice::from_ref(&log)).unwrap();
-            let course = Course::new(&log, 2, &plan.filtering).unwrap();
+            let course = Course::new(&log, &model, &plan.filtering).unwrap();
             let streams = streamed(&model, &course, &ModelKind::ALL, Cut::default()).unwrap();
-            let motion = Motion::trimmed(&log, 2, &plan.filtering).unwrap();
+            let motion = Motion::trimmed(&log, &model, &plan.filtering).unwrap();
             for (kind, stream) in ModelKind::ALL.into_iter().zip(&streams) {
                 let rows = observe(&model, kind, &motion, &plan.filtering).unwrap();
                 let whole =

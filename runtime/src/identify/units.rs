@@ -197,7 +197,7 @@ impl Trial<'_> {
             .resolve(self.model, std::slice::from_ref(&log))
             .ok()?;
         let np = self.model.columns().len();
-        let motion = Motion::trimmed(&log, self.model.joints().len(), &plan.filtering).ok()?;
+        let motion = Motion::trimmed(&log, self.model, &plan.filtering).ok()?;
         let observed = observe(self.model, ModelKind::Explicit, &motion, &plan.filtering).ok()?;
         let found = estimate(&observed.blocks, np, plan.weights).ok()?;
         let evidence = Evidence::from_observations(self.model, &observed, &[], Cut::Blocks(1));

@@ -6,8 +6,9 @@ use rayon::prelude::*;
 
 use super::equations::{rows_kept, touched};
 use super::motion::{Motion, REST};
-use super::{Filtering, ObserveError, check, check_torque};
+use super::{Filtering, ObserveError, check, check_torque, slip};
 use crate::log::Samples;
+use crate::model::IdentificationModel;
 use crate::signal::{Decimator, ZeroPhase};
 
 /// Samples that are looked at together.
@@ -17,11 +18,14 @@ pub(super) const WINDOW: usize = 8192;
 /// lie. Equal to [`Motion::trimmed`] of the whole log, to rounding.
 pub(crate) struct Course<'a> {
     source: &'a dyn Samples,
+    model: &'a dyn IdentificationModel,
     filtering: &'a Filtering,
     prefilter: ZeroPhase,
     pub decimator: Decimator,
     /// Joints that never move, counted from 0, and the positions they are held at.
     resting: Vec<(usize, f64)>,
+    /// Presliding states at every [`WINDOW`]-th sample, joint by joint; empty without a memory.
+    slips: Vec<Vec<f64>>,
     /// The samples between those cut off before the parallel filter.
     within: Range<usize>,
     /// The first sample that decimation keeps, counted in the whole log.
@@ -37,7 +41,7 @@ impl<'a> Course<'a> {
     /// Those of [`Motion::trimmed`] and [`check_torque`]; [`ObserveError::Unreadable`].
     pub fn new(
         source: &'a dyn Samples,
-        joints: usize,
+        model: &'a dyn IdentificationModel,
         filtering: &'a Filtering,
     ) -> Result<Self, ObserveError> {
         let (rate_hz, has) = (source.rate_hz(), source.len());
@@ -57,16 +61,20 @@ impl<'a> Course<'a> {
         }
         let within = start..has - end;
         let kept = decimator.kept(within.len());
-        Ok(Course {
+        let mut course = Course {
             source,
+            model,
             filtering,
             prefilter,
             decimator,
-            resting: resting(source, joints)?,
+            resting: resting(source, model.joints().len())?,
+            slips: Vec::new(),
             first: within.start + kept.first().copied().unwrap_or(0),
             rows: kept.len(),
             within,
-        })
+        };
+        course.slips = course.slips()?;
+        Ok(course)
     }
 
     /// Number of decimated rows, those at the edges included.
@@ -104,6 +112,36 @@ impl<'a> Course<'a> {
     /// # Errors
     /// [`ObserveError::Unreadable`]; [`ObserveError::NoVelocity`]; [`ObserveError::Filter`].
     pub fn motion(&self, range: Range<usize>) -> Result<Motion, ObserveError> {
+        if self.slips.is_empty() {
+            return self.filtered(range);
+        }
+        let known = (range.start / WINDOW).min(self.slips.len() - 1);
+        let from = known * WINDOW;
+        let mut motion = self.filtered(from..range.end)?;
+        let begin = &self.slips[known];
+        motion.slip = slip::along(self.model, &motion.qd, motion.rate_hz, begin);
+        let keep = range.start - from..motion.len;
+        Ok(motion.only(keep))
+    }
+
+    /// The presliding states at the first sample and at every [`WINDOW`]-th after it.
+    fn slips(&self) -> Result<Vec<Vec<f64>>, ObserveError> {
+        if self.model.presliding().is_empty() {
+            return Ok(Vec::new());
+        }
+        let mut states = vec![vec![0.0; self.model.joints().len()]];
+        for start in (0..self.source.len().saturating_sub(WINDOW)).step_by(WINDOW) {
+            let motion = self.filtered(start..start + WINDOW + 1)?;
+            let begin = states.last().map_or(&[][..], Vec::as_slice);
+            let along = slip::along(self.model, &motion.qd, motion.rate_hz, begin);
+            let last = |joint: &Vec<f64>| joint.last().copied().unwrap_or(0.0);
+            states.push(along.iter().map(last).collect());
+        }
+        Ok(states)
+    }
+
+    /// The motion at some samples, but for presliding states.
+    fn filtered(&self, range: Range<usize>) -> Result<Motion, ObserveError> {
         // Two differences look two samples further than the prefilter.
         let reach = self.prefilter.memory() + self.prefilter.extension() + 2;
         let start = range.start.saturating_sub(reach);

@@ -11,6 +11,7 @@ mod error;
 mod filtering;
 mod motion;
 mod regressor;
+mod slip;
 mod stretch;
 mod torque;
 

@@ -2,8 +2,9 @@
 
 use std::ops::Range;
 
-use super::{Filtering, ObserveError};
+use super::{Filtering, ObserveError, slip};
 use crate::log::{Recording, within};
+use crate::model::IdentificationModel;
 use crate::settings::Velocity;
 use crate::signal::central_difference;
 
@@ -27,6 +28,8 @@ pub struct Motion {
     pub qd: Vec<Vec<f64>>,
     /// Accelerations, rad/s^2 or m/s^2.
     pub qdd: Vec<Vec<f64>>,
+    /// Presliding states z/zs, run along the log; empty if the robot's friction has no memory.
+    pub slip: Vec<Vec<f64>>,
     /// Torques, N m or N, if the log has them.
     pub tau: Option<Vec<Vec<f64>>>,
     /// Samples that cannot be believed, ascending and disjoint; see [`Recording::doubtful`].
@@ -43,30 +46,32 @@ impl Motion {
     /// Those of [`Motion::full`], and [`ObserveError::NothingLeft`].
     pub fn trimmed(
         recording: &Recording,
-        joints: usize,
+        model: &dyn IdentificationModel,
         filtering: &Filtering,
     ) -> Result<Self, ObserveError> {
-        Motion::full(recording, joints, filtering)?.cut(filtering.cut_before())
+        Motion::full(recording, model, filtering)?.cut(filtering.cut_before())
     }
 
     /// Filters and differentiates a recording over its whole length.
     ///
     /// # Errors
     /// [`ObserveError::Joints`], [`ObserveError::Length`], [`ObserveError::NotFinite`] if the
-    /// recording does not fit a robot of `joints` joints; [`ObserveError::NoVelocity`];
+    /// recording does not fit the robot; [`ObserveError::NoVelocity`];
     /// [`ObserveError::Filter`] if the log is too short or the cut-off impossible.
     pub fn full(
         recording: &Recording,
-        joints: usize,
+        model: &dyn IdentificationModel,
         filtering: &Filtering,
     ) -> Result<Self, ObserveError> {
-        check(recording, joints)?;
+        check(recording, model.joints().len())?;
         let mut motion = Motion::filtered(recording, filtering)?;
         motion.hold(&resting(&recording.q));
+        motion.slip = slip::along(model, &motion.qd, recording.rate_hz, &[]);
         Ok(motion)
     }
 
-    /// Filters and differentiates a checked recording, or a window of one.
+    /// Filters and differentiates a checked recording, or a window of one; the presliding states,
+    /// which remember what came before, are left to the caller.
     pub(super) fn filtered(
         recording: &Recording,
         filtering: &Filtering,
@@ -98,6 +103,7 @@ impl Motion {
             q,
             qd,
             qdd,
+            slip: Vec::new(),
             tau,
             doubtful: recording.doubtful.clone(),
             resting: Vec::new(),
@@ -124,7 +130,8 @@ impl Motion {
     pub(super) fn only(mut self, keep: Range<usize>) -> Self {
         self.len = keep.len();
         self.doubtful = within(&self.doubtful, &keep);
-        let series = self.q.iter_mut().chain(&mut self.qd).chain(&mut self.qdd);
+        let states = self.q.iter_mut().chain(&mut self.qd).chain(&mut self.qdd);
+        let series = states.chain(&mut self.slip);
         for values in series.chain(self.tau.iter_mut().flatten()) {
             values.truncate(keep.end);
             values.drain(..keep.start);

@@ -107,6 +107,7 @@ fn evaluate(
                     .collect()
             };
             let (q, qd, qdd) = (states(&motion.q), states(&motion.qd), states(&motion.qdd));
+            let slip = states(&motion.slip);
             let len = block.len();
             let mut signals = vec![0.0; count * len];
             if count > 0 {
@@ -115,6 +116,7 @@ fn evaluate(
                     q: &q,
                     qd: &qd,
                     qdd: &qdd,
+                    slip: &slip,
                 };
                 model.evaluate(output, &states, &mut signals);
             }

@@ -137,7 +137,7 @@ struct Stream<'a> {
     row: usize,
     channels: Vec<Channel>,
     blocks: Vec<Block>,
-    states: [Vec<f64>; 3],
+    states: [Vec<f64>; 4],
     samples: Vec<f64>,
 }
 
@@ -213,7 +213,7 @@ impl<'a> Stream<'a> {
         for (to, from) in self
             .states
             .iter_mut()
-            .zip([&motion.q, &motion.qd, &motion.qdd])
+            .zip([&motion.q, &motion.qd, &motion.qdd, &motion.slip])
         {
             to.clear();
             from.iter()
@@ -225,6 +225,7 @@ impl<'a> Stream<'a> {
                 q: &self.states[0],
                 qd: &self.states[1],
                 qdd: &self.states[2],
+                slip: &self.states[3],
             };
             let signals = signals(self.model, channel.content);
             self.samples.resize(signals * samples.len(), 0.0);

@@ -44,6 +44,7 @@ pub fn inverse_dynamics(
             q: &q,
             qd: &qd,
             qdd: &qdd,
+            slip: &[],
         };
         let signals = &mut signals[..pattern.signals * len];
         model.evaluate(Output::Explicit, &states, signals);

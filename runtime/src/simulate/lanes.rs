@@ -64,6 +64,7 @@ impl Lanes {
             q: &self.q[..values],
             qd: &self.qd[..values],
             qdd: &self.qdd[..values],
+            slip: &[],
         };
         model.evaluate(self.output, &states, &mut self.signals[..count * len]);
     }

@@ -40,7 +40,7 @@ fn torque_never_enters_the_observation_matrix() {
         .unwrap();
     for kind in ModelKind::ALL {
         let blocks = |log: &Recording| {
-            let motion = Motion::trimmed(log, 2, &plan.filtering).unwrap();
+            let motion = Motion::trimmed(log, &model, &plan.filtering).unwrap();
             observe(&model, kind, &motion, &plan.filtering)
                 .unwrap()
                 .blocks

@@ -14,7 +14,7 @@ fn a_long_log_in_windows_gives_what_it_gives_at_once() {
     let plan = options()
         .resolve(&model, std::slice::from_ref(&long))
         .unwrap();
-    let motion = Motion::trimmed(&long, 2, &plan.filtering).unwrap();
+    let motion = Motion::trimmed(&long, &model, &plan.filtering).unwrap();
     for kind in ModelKind::ALL {
         let rows = observe(&model, kind, &motion, &plan.filtering).unwrap();
         for &(output, treatment) in kind.terms() {
@@ -61,6 +61,7 @@ fn at_once(
         q: &q,
         qd: &qd,
         qdd: &qdd,
+        slip: &[],
     };
     let mut signals = vec![0.0; model.pattern(output).signals * motion.len];
     model.evaluate(output, &states, &mut signals);
