@@ -107,7 +107,7 @@ fn describe_as_json_has_the_documented_fields() {
 fn describe_for_people_names_joints_parameters_and_operations() {
     let text = stdout(&idim(&["describe", "tx40"]));
     for piece in [
-        "61 base parameters",
+        "80 base parameters",
         "q6 + pi",
         "ZZ1 + YY2",
         "IAM6",

@@ -48,7 +48,7 @@ fn page_of_the_tx40_is_complete_and_below_two_megabytes() {
     // Six joints, held out and training.
     assert_eq!(count(&page, "class=\"curve explicit residual\""), 12);
     assert_eq!(count(&page, "class=\"bar held\""), 7);
-    assert_eq!(count(&page, "class=\"whisker\""), 61);
+    assert_eq!(count(&page, "class=\"whisker\""), 80);
     assert!(page.contains("joint_6") && page.contains("idim identify tx40"));
     let again = idim(folder.path(), &arguments);
     assert!(again.stdout == page.as_bytes(), "two pages differ");
