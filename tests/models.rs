@@ -13,7 +13,7 @@ use idim::codegen::builder;
 use idim::interpreted::Interpreter;
 use idim::robots;
 use idim::runtime::lane::Lane;
-use idim::runtime::model::{IdentificationModel, Output, States};
+use idim::runtime::model::{Entry, IdentificationModel, Output, States};
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::Rng;
 
@@ -242,15 +242,23 @@ fn assert_same(a: &dyn IdentificationModel, b: &dyn IdentificationModel) {
             .map(|_| uniform(&mut generator, size))
             .collect()
     };
-    let (q, qd, qdd) = (series(3.1), series(2.5), series(8.0));
-    let states = States {
+    let (q, qd, qdd, slip) = (series(3.1), series(2.5), series(8.0), series(1.0));
+    let sliding = States {
         len,
         q: &q,
         qd: &qd,
         qdd: &qdd,
         slip: &[],
     };
-    for output in Output::ALL {
+    let states = States {
+        slip: &slip,
+        ..sliding
+    };
+    assert_eq!(a.presliding(), b.presliding());
+    for (output, states) in Output::ALL
+        .into_iter()
+        .flat_map(|o| [(o, states), (o, sliding)])
+    {
         assert_eq!(a.pattern(output), b.pattern(output));
         let count = a.pattern(output).signals * len;
         let (mut first, mut second) = (vec![f64::NAN; count], vec![f64::NAN; count]);
@@ -307,5 +315,67 @@ fn columns_in_another_order_carry_their_names_along() {
             named
         };
         assert_eq!(values(&one), values(&other), "{output:?}");
+    }
+}
+
+#[test]
+fn effects_are_the_torques_of_their_formulas() {
+    let effects = [
+        ("viscous_asymmetry", ""),
+        ("stribeck", "velocity = 0.4"),
+        ("nonlinear_viscous", "p = 1.5"),
+        ("position_dependent_friction", "N = 3"),
+        ("torque_ripple", "N = 2.5"),
+        ("spring", ""),
+        ("presliding", "zs = 0.01"),
+    ];
+    let mut text = "name = \"arm\"\neffects = [\"coulomb\"]\n[[joint]]\nname = \"a\"\n\
+                    kind = \"revolute\"\n"
+        .to_owned();
+    for (kind, shape) in effects {
+        text.push_str(&format!(
+            "[[effect]]\nkind = \"{kind}\"\njoint = \"a\"\n{shape}\n"
+        ));
+    }
+    let model = Interpreter::new(&builder::read_texts(&[("arm.toml", &text)]).unwrap());
+    for (q, qd, slip) in [(0.7f64, -0.3f64, 0.2f64), (-1.9, 0.9, 1.0)] {
+        let torque = |name: &str, output: Output| {
+            let mut signals = vec![f64::NAN; model.pattern(output).signals];
+            let states = States {
+                len: 1,
+                q: &[q],
+                qd: &[qd],
+                qdd: &[0.0],
+                slip: &[slip],
+            };
+            model.evaluate(output, &states, &mut signals);
+            let named = |entry: &&Entry| model.columns()[entry.column].name == name;
+            let entry = model.pattern(output).entries.iter().find(named).unwrap();
+            signals[entry.signal]
+        };
+        let direction = qd.signum();
+        for (name, expected) in [
+            ("FVA1", qd.abs()),
+            ("FST1", direction * (-(qd / 0.4).powi(2)).exp()),
+            ("FVN1", direction * qd.abs().powf(1.5)),
+            ("FPS1", (3.0 * q).sin() * direction),
+            ("FPC1", (3.0 * q).cos() * direction),
+            ("RS1", (2.5 * q).sin()),
+            ("RC1", (2.5 * q).cos()),
+            ("K1", q),
+            ("FP1", slip - direction),
+        ] {
+            for (output, value) in [
+                (Output::Explicit, expected),
+                (Output::Rest, expected),
+                (Output::Power, qd * expected),
+            ] {
+                let found = torque(name, output);
+                assert!(
+                    (found - value).abs() < 4.0 * f64::EPSILON,
+                    "{name}: {found} {value}"
+                );
+            }
+        }
     }
 }
