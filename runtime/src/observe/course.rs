@@ -239,3 +239,65 @@ fn extent(q: &[f64]) -> Extent {
         sum: all.sum + q,
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::identify::tests::hand_written::scara;
+    use crate::identify::tests::synthetic::{motion, options};
+    use crate::model::{Column, Joint, Output, Pattern, Presliding, States};
+    use crate::settings::Settings;
+
+    /// A robot whose second joint does not slide at once.
+    struct Sticky<T>(T);
+
+    impl<T: IdentificationModel> IdentificationModel for Sticky<T> {
+        fn name(&self) -> &str {
+            self.0.name()
+        }
+        fn joints(&self) -> &[Joint] {
+            self.0.joints()
+        }
+        fn columns(&self) -> &[Column] {
+            self.0.columns()
+        }
+        fn pattern(&self, output: Output) -> &Pattern {
+            self.0.pattern(output)
+        }
+        fn settings(&self) -> &Settings {
+            self.0.settings()
+        }
+        fn presliding(&self) -> &[Presliding] {
+            &[Presliding { joint: 1, zs: 0.05 }]
+        }
+        fn evaluate(&self, output: Output, states: &States<'_>, signals: &mut [f64]) {
+            self.0.evaluate(output, states, signals);
+        }
+    }
+
+    #[test]
+    fn friction_remembers_across_windows() {
+        let model = Sticky(scara());
+        let mut log = motion("long", 0.0, 3 * WINDOW + 500);
+        log.tau = Some(log.q.clone());
+        let plan = options()
+            .resolve(&model, std::slice::from_ref(&log))
+            .unwrap();
+        let whole = Motion::full(&log, &model, &plan.filtering).unwrap();
+        let course = Course::new(&log, &model, &plan.filtering).unwrap();
+        assert!(whole.slip[0].iter().all(|slip| *slip == 0.0));
+        let reached = |limit: f64| {
+            whole.slip[1]
+                .iter()
+                .any(|slip| slip * limit.signum() > limit.abs())
+        };
+        assert!(reached(0.9) && reached(-0.9));
+        for range in [0..10, 100..9000, WINDOW..WINDOW + 5, 20_000..log.len] {
+            let part = course.motion(range.clone()).unwrap();
+            assert_eq!(part.len, range.len());
+            for (a, b) in part.slip[1].iter().zip(&whole.slip[1][range.clone()]) {
+                assert!((a - b).abs() < 1e-9, "{range:?}: {a} {b}");
+            }
+        }
+    }
+}

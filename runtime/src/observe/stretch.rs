@@ -210,10 +210,10 @@ impl<'a> Stream<'a> {
     /// Takes the next `rows` rows of a motion, which begins `start` rows before the last row.
     fn follow(&mut self, motion: &Motion, start: usize, rows: usize) {
         let samples = start * self.ratio..(start + rows) * self.ratio + 2;
-        for (to, from) in self
-            .states
-            .iter_mut()
-            .zip([&motion.q, &motion.qd, &motion.qdd, &motion.slip])
+        for (to, from) in
+            self.states
+                .iter_mut()
+                .zip([&motion.q, &motion.qd, &motion.qdd, &motion.slip])
         {
             to.clear();
             from.iter()
