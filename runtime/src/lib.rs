@@ -7,6 +7,7 @@
 //! sees a description.
 
 pub mod batch;
+pub mod diagnose;
 pub mod estimate;
 pub mod evidence;
 pub mod identify;

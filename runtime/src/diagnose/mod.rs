@@ -1,0 +1,5 @@
+//! From a gap between model and measurement to a named effect.
+
+mod catalogue;
+
+pub use catalogue::{Catalogue, Entry, EntryKind, Hypothesis, Signals, TorqueColumn};
