@@ -8,6 +8,7 @@
 pub use idim_codegen as codegen;
 pub use idim_runtime as runtime;
 
+pub mod catalogue;
 pub mod demo;
 pub mod interpreted;
 

@@ -30,6 +30,11 @@ pub enum EffectKind {
     TorqueRipple,
     /// Spring `K q`; where it is at rest is told by the offset.
     Spring,
+    /// Elastic end stop `KE side max(0, side (q - position))`.
+    EndStop,
+    /// Friction of a shaft that two joints turn together: `FSX sgn(v) + FVX v` on the first and
+    /// `ratio` times that on the second, v = qd_i + ratio qd_j.
+    TransmissionCoupling,
     /// Friction that turns round over a displacement zs, `FP (z/zs - sgn(qd))` with Dahl's
     /// `dz/dt = qd - |qd| z/zs`: what Coulomb friction lacks before the joint slides.
     Presliding,
@@ -48,7 +53,7 @@ pub struct Shape {
 
 impl EffectKind {
     /// Every entry, in the order of the catalogue.
-    pub const ALL: [EffectKind; 13] = [
+    pub const ALL: [EffectKind; 15] = [
         EffectKind::Viscous,
         EffectKind::Coulomb,
         EffectKind::Offset,
@@ -61,6 +66,8 @@ impl EffectKind {
         EffectKind::PositionDependentFriction,
         EffectKind::TorqueRipple,
         EffectKind::Spring,
+        EffectKind::EndStop,
+        EffectKind::TransmissionCoupling,
         EffectKind::Presliding,
     ];
 
@@ -79,6 +86,8 @@ impl EffectKind {
             EffectKind::PositionDependentFriction => "position_dependent_friction",
             EffectKind::TorqueRipple => "torque_ripple",
             EffectKind::Spring => "spring",
+            EffectKind::EndStop => "end_stop",
+            EffectKind::TransmissionCoupling => "transmission_coupling",
             EffectKind::Presliding => "presliding",
         }
     }
@@ -94,7 +103,9 @@ impl EffectKind {
     /// How many joints it takes to say where it acts.
     pub fn arity(self) -> usize {
         match self {
-            EffectKind::WristCoupling | EffectKind::WristStribeck => 2,
+            EffectKind::WristCoupling
+            | EffectKind::WristStribeck
+            | EffectKind::TransmissionCoupling => 2,
             _ => 1,
         }
     }
@@ -121,6 +132,23 @@ impl EffectKind {
                 name: "N",
                 default: 1.0,
                 range: (f64::MIN_POSITIVE, f64::MAX),
+            }],
+            EffectKind::EndStop => &[
+                Shape {
+                    name: "position",
+                    default: 0.0,
+                    range: (f64::MIN, f64::MAX),
+                },
+                Shape {
+                    name: "side",
+                    default: 1.0,
+                    range: (-1.0, 1.0),
+                },
+            ],
+            EffectKind::TransmissionCoupling => &[Shape {
+                name: "ratio",
+                default: 1.0,
+                range: (-100.0, 100.0),
             }],
             EffectKind::Presliding => &[Shape {
                 name: "zs",

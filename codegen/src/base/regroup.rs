@@ -37,7 +37,7 @@ pub fn regroup(w: &DMatrix<f64>, split: &Split, standard: Vec<Standard>) -> Vec<
             );
             BaseParameter {
                 name: names::base(&parameter.name, relation.len() > 1),
-                unit: parameter.unit.clone(),
+                unit: parameter.unit.to_owned(),
                 meaning: parameter.meaning.clone(),
                 link: parameter.link,
                 kind: parameter.kind,

@@ -10,6 +10,10 @@ use crate::mechanism::{Effect, JointKind};
 use super::{Columns, ParameterKind, Standard};
 
 mod friction;
+mod signs;
+mod transmission;
+
+use signs::Signs;
 
 /// The definition of one column.
 struct Torque {
@@ -27,13 +31,27 @@ struct Torque {
 
 /// The parameters of an effect and their columns.
 pub fn columns(graph: &mut Graph, kinds: &[JointKind], effect: &Effect) -> Vec<Standard> {
+    columns_in_noise(graph, kinds, effect, &[])
+}
+
+/// The same for velocities that are not certain: below `dead_band`, rad/s or m/s for each joint,
+/// the sign of a velocity is interpolated, so that the noise of an encoder at rest is no torque.
+pub fn columns_in_noise(
+    graph: &mut Graph,
+    kinds: &[JointKind],
+    effect: &Effect,
+    dead_band: &[f64],
+) -> Vec<Standard> {
+    let signs = Signs(dead_band);
     let torques = match effect.kind {
         EffectKind::Viscous => viscous(graph, kinds, effect),
-        EffectKind::Coulomb => coulomb(graph, kinds, effect),
+        EffectKind::Coulomb => coulomb(graph, kinds, effect, signs),
         EffectKind::Offset => offset(graph, kinds, effect),
         EffectKind::RotorInertia => rotor_inertia(kinds, effect),
-        EffectKind::WristCoupling => wrist_coupling(graph, kinds, effect),
-        _ => friction::torques(graph, kinds, effect),
+        EffectKind::WristCoupling => wrist_coupling(graph, kinds, effect, signs),
+        EffectKind::EndStop => transmission::end_stop(graph, kinds, effect),
+        EffectKind::TransmissionCoupling => transmission::coupling(graph, kinds, effect, signs),
+        _ => friction::torques(graph, kinds, effect, signs),
     };
     torques
         .into_iter()
@@ -64,7 +82,12 @@ fn viscous(graph: &mut Graph, kinds: &[JointKind], effect: &Effect) -> Vec<Torqu
 }
 
 /// FS sgn(qd), or FS tanh(qd / smoothing).
-fn coulomb(graph: &mut Graph, kinds: &[JointKind], effect: &Effect) -> Vec<Torque> {
+fn coulomb(
+    graph: &mut Graph,
+    kinds: &[JointKind],
+    effect: &Effect,
+    signs: Signs<'_>,
+) -> Vec<Torque> {
     let joint = effect.joints[0];
     let qd = graph.input(Input::Qd(joint));
     let smoothing = effect.shape.first().copied().unwrap_or(0.0);
@@ -72,7 +95,7 @@ fn coulomb(graph: &mut Graph, kinds: &[JointKind], effect: &Effect) -> Vec<Torqu
         let relative = graph.scale(1.0 / smoothing, qd);
         graph.call(Function::Tanh, relative)
     } else {
-        graph.call(Function::Sign, qd)
+        signs.of_joint(graph, joint)
     };
     vec![Torque {
         symbol: "FS",
@@ -115,12 +138,17 @@ fn rotor_inertia(kinds: &[JointKind], effect: &Effect) -> Vec<Torque> {
 
 /// Two wrist joints driven through each other (Gautier, TX40): joint i gets
 /// IAM qdd_k + FVM qd_k + FSM sgn(qd_i + qd_k), joint k the same with i and k exchanged.
-fn wrist_coupling(graph: &mut Graph, kinds: &[JointKind], effect: &Effect) -> Vec<Torque> {
+fn wrist_coupling(
+    graph: &mut Graph,
+    kinds: &[JointKind],
+    effect: &Effect,
+    signs: Signs<'_>,
+) -> Vec<Torque> {
     let (i, k) = (effect.joints[0], effect.joints[1]);
     let qd_i = graph.input(Input::Qd(i));
     let qd_k = graph.input(Input::Qd(k));
     let both = graph.add(qd_i, qd_k);
-    let direction = graph.call(Function::Sign, both);
+    let direction = signs.of(graph, both, signs.band(i) + signs.band(k));
     let torque = |symbol, unit, what: &str, inertia, rest| Torque {
         symbol,
         joint: k,
@@ -185,7 +213,7 @@ impl Torque {
         columns.power = Some(power).filter(|&dh| !graph.is_zero(dh));
         Standard {
             name: format!("{}{}", self.symbol, self.joint + 1),
-            unit: self.unit.into(),
+            unit: self.unit,
             meaning: self.meaning,
             link: self.joint,
             kind: self.kind,

@@ -37,7 +37,7 @@ pub struct Standard {
     /// Name, such as `ZZ1` or `FV2`.
     pub name: String,
     /// SI unit.
-    pub unit: String,
+    pub unit: &'static str,
     /// One line in words.
     pub meaning: String,
     /// Link or joint, counted from 0.
@@ -110,7 +110,7 @@ fn inertial(graph: &mut Graph, motions: &Motions, link: usize, parameters: &mut 
         let energy = Some(energy).filter(|&h| !graph.is_zero(h));
         parameters.push(Standard {
             name,
-            unit: unit(index).into(),
+            unit: unit(index),
             meaning: meaning(index, link),
             link,
             kind: ParameterKind::Inertial(index),

@@ -48,7 +48,8 @@ pub struct Hypothesis {
     /// The coarse grid of shapes to try, each with a value for each shape parameter; a single
     /// empty one for effects without a shape.
     pub grid: Vec<Vec<f64>>,
-    /// Bounds of each shape parameter, for refinement between grid points.
+    /// Bounds of each shape parameter, for refinement between grid points; one whose ends are
+    /// equal (the side of an end stop) is not refined.
     pub bounds: Vec<Range<f64>>,
 }
 
@@ -87,6 +88,9 @@ pub struct TorqueColumn {
     pub torque: Vec<(usize, Vec<f64>)>,
 }
 
+/// The columns of hypotheses with given shapes along one motion.
+pub type ColumnsAlong<'a> = Box<dyn Fn(&Hypothesis, &[f64]) -> Vec<TorqueColumn> + Sync + 'a>;
+
 /// All effects that the diagnosis may name on one robot.
 pub trait Catalogue: Sync {
     /// The entries, in a fixed order.
@@ -96,9 +100,20 @@ pub trait Catalogue: Sync {
     fn hypotheses(&self, signals: &Signals<'_>) -> Vec<Hypothesis>;
 
     /// The columns of a hypothesis with a given shape along signals.
-    fn columns(&self, hypothesis: &Hypothesis, shape: &[f64], signals: &Signals<'_>)
-    -> Vec<TorqueColumn>;
+    fn columns(
+        &self,
+        hypothesis: &Hypothesis,
+        shape: &[f64],
+        signals: &Signals<'_>,
+    ) -> Vec<TorqueColumn>;
+
+    /// [`Catalogue::columns`] of many hypotheses along one motion: what several of them are made of,
+    /// such as the derivatives of the model's torque, is computed once.
+    fn along<'a>(&'a self, signals: Signals<'a>) -> ColumnsAlong<'a> {
+        Box::new(move |hypothesis, shape| self.columns(hypothesis, shape, &signals))
+    }
 
     /// Whether parameter values of an effect are plausible (sign and size), and if not, why.
-    fn implausible(&self, hypothesis: &Hypothesis, shape: &[f64], values: &[f64]) -> Option<String>;
+    fn implausible(&self, hypothesis: &Hypothesis, shape: &[f64], values: &[f64])
+    -> Option<String>;
 }

@@ -2,4 +2,4 @@
 
 mod catalogue;
 
-pub use catalogue::{Catalogue, Entry, EntryKind, Hypothesis, Signals, TorqueColumn};
+pub use catalogue::{Catalogue, ColumnsAlong, Entry, EntryKind, Hypothesis, Signals, TorqueColumn};

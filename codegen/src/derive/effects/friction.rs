@@ -1,14 +1,19 @@
 //! Friction beyond Coulomb and viscous, and torques along the position: what a measured log asks
 //! for besides the usual columns.
 
-use super::{Torque, by_kind};
+use super::{Signs, Torque, by_kind};
 use crate::catalogue::EffectKind;
 use crate::derive::ParameterKind;
 use crate::expr::{Expr, Function, Graph, Input};
 use crate::mechanism::{Effect, JointKind};
 
 /// The torques of an effect of this family; none for the others.
-pub(super) fn torques(graph: &mut Graph, kinds: &[JointKind], effect: &Effect) -> Vec<Torque> {
+pub(super) fn torques(
+    graph: &mut Graph,
+    kinds: &[JointKind],
+    effect: &Effect,
+    signs: Signs<'_>,
+) -> Vec<Torque> {
     let Some(&joint) = effect.joints.first() else {
         return Vec::new();
     };
@@ -23,19 +28,20 @@ pub(super) fn torques(graph: &mut Graph, kinds: &[JointKind], effect: &Effect) -
             one("FVA", unit, "asymmetry of the viscous friction", speed)
         }
         EffectKind::Stribeck => {
-            let torque = excess(graph, qd, shape);
+            let direction = signs.of_joint(graph, joint);
+            let torque = excess(graph, qd, direction, shape);
             one("FST", force, "Stribeck excess of the friction", torque)
         }
-        EffectKind::WristStribeck => wrist_stribeck(graph, force, effect, shape),
+        EffectKind::WristStribeck => wrist_stribeck(graph, force, effect, signs),
         EffectKind::NonlinearViscous => {
             let unit = by_kind(kinds[joint], "N m (s/rad)^p", "N (s/m)^p");
-            let direction = graph.call(Function::Sign, qd);
+            let direction = signs.of_joint(graph, joint);
             let power = graph.call(Function::Power(shape.to_bits()), qd);
             let torque = graph.mul(direction, power);
             one("FVN", unit, "nonlinear viscous friction", torque)
         }
         EffectKind::PositionDependentFriction => {
-            let direction = graph.call(Function::Sign, qd);
+            let direction = signs.of_joint(graph, joint);
             let [sine, cosine] = waves(graph, joint, shape).map(|wave| graph.mul(wave, direction));
             let what = "friction along the turn";
             let sine = column(joint, "FPS", force, what, sine);
@@ -53,7 +59,7 @@ pub(super) fn torques(graph: &mut Graph, kinds: &[JointKind], effect: &Effect) -
         }
         EffectKind::Presliding => {
             let slip = graph.input(Input::Slip(joint));
-            let direction = graph.call(Function::Sign, qd);
+            let direction = signs.of_joint(graph, joint);
             let torque = graph.sub(slip, direction);
             one("FP", force, "friction before sliding", torque)
         }
@@ -61,7 +67,9 @@ pub(super) fn torques(graph: &mut Graph, kinds: &[JointKind], effect: &Effect) -
         | EffectKind::Coulomb
         | EffectKind::Offset
         | EffectKind::RotorInertia
-        | EffectKind::WristCoupling => Vec::new(),
+        | EffectKind::WristCoupling
+        | EffectKind::EndStop
+        | EffectKind::TransmissionCoupling => Vec::new(),
     }
 }
 
@@ -84,8 +92,7 @@ fn column(
 }
 
 /// sgn(qd) exp(-(qd / velocity)^2).
-fn excess(graph: &mut Graph, qd: Expr, velocity: f64) -> Expr {
-    let direction = graph.call(Function::Sign, qd);
+fn excess(graph: &mut Graph, qd: Expr, direction: Expr, velocity: f64) -> Expr {
     let relative = graph.scale(1.0 / velocity, qd);
     let near_rest = graph.call(Function::Bell, relative);
     graph.mul(direction, near_rest)
@@ -103,15 +110,17 @@ fn wrist_stribeck(
     graph: &mut Graph,
     unit: &'static str,
     effect: &Effect,
-    velocity: f64,
+    signs: Signs<'_>,
 ) -> Vec<Torque> {
+    let velocity = effect.shape.first().copied().unwrap_or(1.0);
     let &[i, k] = effect.joints.as_slice() else {
         return Vec::new();
     };
     let qd_i = graph.input(Input::Qd(i));
     let qd_k = graph.input(Input::Qd(k));
     let both = graph.add(qd_i, qd_k);
-    let torque = excess(graph, both, velocity);
+    let direction = signs.of(graph, both, signs.band(i) + signs.band(k));
+    let torque = excess(graph, both, direction, velocity);
     vec![Torque {
         symbol: "FSTM",
         joint: k,

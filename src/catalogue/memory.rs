@@ -1,0 +1,207 @@
+//! Effects with a state that runs along the motion.
+
+use std::f64::consts::TAU;
+
+use idim_codegen::catalogue::EffectKind;
+use idim_runtime::diagnose::{Entry, EntryKind, Hypothesis, TorqueColumn};
+
+use super::along::{Along, Displacement};
+use super::drive::direction;
+use super::evaluate::Motion;
+use super::reach::{geometric, plain};
+use super::{Effect, Effects, Reach};
+
+pub(super) static PRESLIDING: Effect = Effect {
+    entry: Entry {
+        name: "presliding",
+        meaning: "friction that turns round over a displacement: a contact that yields before it \
+                  slides",
+        formula: "FP (z/zs - sgn(qd)), dz/dt = qd - |qd| z/zs (Dahl)",
+        parameters: &[("FP", "N m")],
+        shape: &[("zs", "rad")],
+        confused_with: &["stribeck", "backlash", "joint_elasticity"],
+        experiment: "small reversals of growing amplitude",
+        kind: EntryKind::Memory,
+        hidden_by_parameters: false,
+    },
+    hypotheses: |_, reach| reach.each_of(|_| true, |_| geometric(0.002, 0.08, 6)),
+    columns: presliding,
+    implausible: |values| {
+        let negative = values.first().is_some_and(|friction| *friction < 0.0);
+        negative.then_some("friction would be largest before the joint slides: no yielding contact")
+    },
+};
+
+fn presliding(along: &Along<'_>, joints: &[usize], shape: &[f64]) -> Vec<TorqueColumn> {
+    let (&[joint], &[zs]) = (joints, shape) else {
+        return Vec::new();
+    };
+    let slip = dahl(&along.signals.qd[joint], along.signals.rate_hz, zs);
+    let motion = Motion {
+        slip: Some((joint, &slip)),
+        ..along.motion()
+    };
+    along.defined_along(&motion, EffectKind::Presliding, joints, shape)
+}
+
+/// z/zs of Dahl's contact from rest in the middle of its range: exact for a velocity that is
+/// constant over a sample, so that no step is too long for it.
+pub(super) fn dahl(qd: &[f64], rate_hz: f64, zs: f64) -> Vec<f64> {
+    let mut state = 0.0;
+    let step = |(i, qd): (usize, &f64)| {
+        if i > 0 {
+            let kept = (-qd.abs() / (rate_hz * zs)).exp();
+            let direction = if *qd < 0.0 { -1.0 } else { 1.0 };
+            state = direction + (state - direction) * kept;
+        }
+        state
+    };
+    qd.iter().enumerate().map(step).collect()
+}
+
+pub(super) static FRICTION_DRIFT: Effect = Effect {
+    entry: Entry {
+        name: "friction_drift",
+        meaning: "friction that changes from the beginning of the log, as the robot warms up",
+        formula: "(1 - exp(-t/T)) (FDS sgn(qd) + FDV qd)",
+        parameters: &[("FDS", "N m"), ("FDV", "N m s/rad")],
+        shape: &[("T", "s")],
+        confused_with: &["nonlinear_viscous"],
+        experiment: "the same motion cold and warm",
+        kind: EntryKind::Memory,
+        hidden_by_parameters: false,
+    },
+    hypotheses: |_, reach| {
+        let longest = (1.25 * reach.duration()).clamp(1.5, 600.0);
+        reach.each_of(|_| true, |_| geometric(1.5, longest, 6))
+    },
+    columns: friction_drift,
+    implausible: |_| None,
+};
+
+fn friction_drift(along: &Along<'_>, joints: &[usize], shape: &[f64]) -> Vec<TorqueColumn> {
+    let (&[joint], &[time]) = (joints, shape) else {
+        return Vec::new();
+    };
+    let warm = |t: &f64| -(-t / time).exp_m1();
+    let times = |series: &[f64]| -> Vec<f64> {
+        let pairs = along.signals.t.iter().zip(series);
+        pairs.map(|(t, x)| warm(t) * x).collect()
+    };
+    let viscous = along.by_kind(joint, "N m s/rad", "N s/m");
+    vec![
+        along.column("FDS", along.force(joint), joint, times(&along.sign(joint))),
+        along.column("FDV", viscous, joint, times(&along.signals.qd[joint])),
+    ]
+}
+
+pub(super) static JOINT_ELASTICITY: Effect = Effect {
+    entry: Entry {
+        name: "joint_elasticity",
+        meaning: "a gear that yields: the link follows the drive behind a resonance",
+        formula: "EL (y - tau_rigid), y'' + 2 damping w y' + w^2 (y - tau_rigid) = 0, w = 2 pi f",
+        parameters: &[("EL", "1")],
+        shape: &[("f", "Hz"), ("damping", "1")],
+        confused_with: &["rotor_inertia", "time_shift", "link_length"],
+        experiment: "a chirp; a test with the output locked",
+        kind: EntryKind::Memory,
+        hidden_by_parameters: false,
+    },
+    hypotheses: elasticity_grid,
+    columns: elasticity,
+    implausible: |values| match values.first() {
+        Some(part) if *part < 0.0 => Some("the stiffness of the joint would be negative"),
+        Some(part) if *part > 5.0 => Some("the link would swing more than its resonance makes it"),
+        _ => None,
+    },
+};
+
+/// Frequencies from 2 to 15 Hz with three dampings.
+fn elasticity_grid(_: &Effects, reach: &Reach<'_>) -> Vec<Hypothesis> {
+    let nyquist = 0.5 * reach.signals.rate_hz;
+    let highest = 15f64.min(0.8 * nyquist);
+    let on_joint = |joint: usize| {
+        let mut elastic = plain(vec![joint]);
+        elastic.grid = geometric(2.0, highest, 7)
+            .into_iter()
+            .flat_map(|f| [0.03, 0.1, 0.3].map(|damping| vec![f, damping]))
+            .collect();
+        elastic.bounds = vec![2.0..highest.max(2.0), 0.02..0.3];
+        elastic
+    };
+    reach.moving().map(on_joint).collect()
+}
+
+fn elasticity(along: &Along<'_>, joints: &[usize], shape: &[f64]) -> Vec<TorqueColumn> {
+    let (&[joint], &[f, damping]) = (joints, shape) else {
+        return Vec::new();
+    };
+    let rigid = &along.signals.tau_rigid[joint];
+    let swung = resonance(rigid, along.signals.rate_hz, TAU * f, damping);
+    let torque = swung.iter().zip(rigid).map(|(y, u)| y - u).collect();
+    vec![along.column("EL", "1", joint, torque)]
+}
+
+/// y'' + 2 damping w y' + w^2 y = w^2 u from rest at the first sample: exact for an input that is
+/// linear between samples. `w` in rad/s, damping between 0 and 1.
+pub(super) fn resonance(u: &[f64], rate_hz: f64, w: f64, damping: f64) -> Vec<f64> {
+    let (decay, dt) = (damping * w, 1.0 / rate_hz);
+    let own = w * (1.0 - damping * damping).max(1e-12).sqrt();
+    let (sin, cos) = (own * dt).sin_cos();
+    let fade = (-decay * dt).exp();
+    let (mut y, mut slope) = (u.first().copied().unwrap_or(0.0), 0.0);
+    let mut out = Vec::with_capacity(u.len());
+    out.extend(u.first());
+    for pair in u.windows(2) {
+        // The response to a ramp runs behind it; what is left swings.
+        let rise = (pair[1] - pair[0]) * rate_hz;
+        let behind = 2.0 * damping * rise / w;
+        let (z, zd) = (y - (pair[0] - behind), slope - rise);
+        let swing = fade * (z * (cos + decay / own * sin) + zd / own * sin);
+        let swing_rate = fade * (zd * (cos - decay / own * sin) - z * w * w / own * sin);
+        y = pair[1] - behind + swing;
+        slope = rise + swing_rate;
+        out.push(y);
+    }
+    out
+}
+
+pub(super) static BACKLASH: Effect = Effect {
+    entry: Entry {
+        name: "backlash",
+        meaning: "play of a gear: the link lies behind or before the drive by half the gap",
+        formula: "d(tau_m)/dq_j along -gap/2 sgn(tau_rigid) and its time derivatives",
+        parameters: &[("gap", "rad")],
+        shape: &[],
+        confused_with: &["presliding", "stribeck", "joint_elasticity"],
+        experiment: "sign changes of the load at a constant direction of motion",
+        kind: EntryKind::Memory,
+        hidden_by_parameters: false,
+    },
+    hypotheses: |_, reach| reach.each_joint(),
+    columns: backlash,
+    implausible: |values| match values.first() {
+        Some(gap) if *gap < 0.0 => Some("the gap would be negative"),
+        Some(gap) if *gap > 0.2 => Some("a gap of more than 0.2 rad would have been heard"),
+        _ => None,
+    },
+};
+
+fn backlash(along: &Along<'_>, joints: &[usize], _: &[f64]) -> Vec<TorqueColumn> {
+    let &[joint] = joints else {
+        return Vec::new();
+    };
+    let side = direction(&along.signals.tau_rigid[joint]);
+    let position: Vec<f64> = side.iter().map(|side| -0.5 * side).collect();
+    let velocity = along.rate(&position);
+    let by = Displacement {
+        acceleration: along.rate(&velocity),
+        position,
+        velocity,
+    };
+    vec![TorqueColumn {
+        name: format!("gap{}", joint + 1),
+        unit: along.by_kind(joint, "rad", "m"),
+        torque: along.displaced(joint, &by),
+    }]
+}
