@@ -81,7 +81,7 @@ fn correction(
 }
 
 /// What the description says of the links' inertias; zero where it is silent.
-fn described(robot: &Robot) -> StandardValues {
+pub(super) fn described(robot: &Robot) -> StandardValues {
     let link = |joint: &idim_codegen::mechanism::Joint| {
         let bodies = joint.bodies.iter().filter_map(|body| body.inertial);
         bodies
@@ -100,7 +100,7 @@ fn described(robot: &Robot) -> StandardValues {
 }
 
 /// Link and place of a standard inertial parameter such as `XX3`.
-fn inertial(name: &str) -> Option<(usize, usize)> {
+pub(super) fn inertial(name: &str) -> Option<(usize, usize)> {
     let symbol = name.trim_end_matches(|c: char| c.is_ascii_digit());
     let place = NAMES.iter().position(|known| *known == symbol)?;
     let number: usize = name[symbol.len()..].parse().ok()?;

@@ -12,6 +12,7 @@ mod drive;
 mod evaluate;
 mod friction;
 mod geometry;
+mod guide;
 mod memory;
 mod position;
 mod reach;
@@ -27,6 +28,8 @@ use idim_codegen::expr::Expr;
 use idim_codegen::mechanism::JointKind;
 use idim_codegen::robot::Output;
 use idim_runtime::diagnose::{Catalogue, ColumnsAlong, Entry, Hypothesis, Signals, TorqueColumn};
+
+pub use guide::guide;
 
 use along::Along;
 use evaluate::Linear;

@@ -1,0 +1,116 @@
+//! Errors of the signals to first order, and states that run along the motion.
+
+use super::arm::{Course, PLAIN, RATE, apart, size, slope, spread, torque};
+use crate::catalogue::Effects;
+use crate::catalogue::memory::{dahl, resonance};
+
+#[test]
+fn an_eccentric_encoder_moves_the_torque_to_first_order() {
+    let robot = PLAIN.robot();
+    let mut course = Course::of(&robot);
+    let n = 3.0;
+    let columns = course.columns(&Effects::new(&robot), "encoder_eccentricity", &[1], &[n]);
+    // The displacement and its derivatives, applied to the motion itself.
+    let step = 1e-5;
+    for i in 0..course.t.len() {
+        let (q, qd, qdd) = (course.q[1][i], course.qd[1][i], course.qdd[1][i]);
+        let (sin, cos) = (n * q).sin_cos();
+        course.q[1][i] += step * sin;
+        course.qd[1][i] += step * n * cos * qd;
+        course.qdd[1][i] += step * (n * cos * qdd - n * n * sin * qd * qd);
+    }
+    let expected = slope(&torque(&robot, &course.motion()), &course.tau, step);
+    let got = spread(&columns[0], course.t.len());
+    assert!(size(&expected) > 1.0 && apart(&got, &expected) < 1e-3 * size(&expected));
+    assert_eq!(columns[1].name, "ECC2");
+}
+
+#[test]
+fn a_torque_that_is_ahead_differs_by_its_rate() {
+    let robot = PLAIN.robot();
+    let course = Course::of(&robot);
+    let columns = course.columns(&Effects::new(&robot), "time_shift", &[], &[]);
+    let got = spread(&columns[0], course.t.len());
+    // One sample ahead minus one behind, over two sampling intervals: away from the ends the
+    // same, up to the curvature of the torque.
+    for joint in 0..4 {
+        for i in 1..course.t.len() - 1 {
+            let tau = &course.tau[joint];
+            let expected = (tau[i + 1] - tau[i - 1]) * 0.5 * RATE;
+            assert!((got[joint][i] - expected).abs() < 1e-9 * expected.abs().max(1.0));
+        }
+    }
+    assert_eq!((columns.len(), columns[0].name.as_str()), (1, "TSH"));
+    let one = course.columns(&Effects::new(&robot), "time_shift", &[2], &[]);
+    assert_eq!((one[0].torque.len(), one[0].name.as_str()), (1, "TSH3"));
+}
+
+#[test]
+fn a_yielding_contact_builds_up_friction_as_dahl_says() {
+    // From rest at constant speed: z/zs = 1 - exp(-qd t / zs).
+    let (speed, zs) = (0.1, 0.01);
+    let state = dahl(&vec![speed; 400], RATE, zs);
+    for (i, state) in state.iter().enumerate() {
+        let expected = -(-speed * i as f64 / RATE / zs).exp_m1();
+        assert!((state - expected).abs() < 1e-12);
+    }
+    let robot = PLAIN.robot();
+    let course = Course::of(&robot);
+    let columns = course.columns(&Effects::new(&robot), "presliding", &[0], &[zs]);
+    let slip = dahl(&course.qd[0], RATE, zs);
+    let sign = |qd: f64| (qd / 0.05).clamp(-1.0, 1.0);
+    for (i, torque) in columns[0].torque[0].1.iter().enumerate() {
+        assert!((torque - (slip[i] - sign(course.qd[0][i]))).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn a_resonance_is_exact_along_ramps_and_swings_at_its_frequency() {
+    let (w, damping) = (30.0, 0.1);
+    // A ramp, at two rates: the same at common times, so that no step is an approximation.
+    let ramp = |rate: f64, len: usize| -> Vec<f64> {
+        let input: Vec<f64> = (0..len).map(|i| i as f64 / rate).collect();
+        resonance(&input, rate, w, damping)
+    };
+    let (coarse, fine) = (ramp(50.0, 100), ramp(1000.0, 2000));
+    for (i, coarse) in coarse.iter().enumerate() {
+        assert!((coarse - fine[20 * i]).abs() < 1e-12);
+    }
+    // Driven at its frequency it reaches 1 / (2 damping) times the input.
+    let input: Vec<f64> = (0..20_000)
+        .map(|i| (w * f64::from(i) / 2000.0).sin())
+        .collect();
+    let driven = resonance(&input, 2000.0, w, damping);
+    let top = driven[10_000..]
+        .iter()
+        .fold(0.0, |all: f64, y| all.max(y.abs()));
+    assert!((top - 5.0).abs() < 1e-3, "{top}");
+}
+
+#[test]
+fn play_moves_the_link_behind_the_drive() {
+    let robot = PLAIN.robot();
+    let course = Course::of(&robot);
+    let columns = course.columns(&Effects::new(&robot), "backlash", &[1], &[]);
+    let got = spread(&columns[0], course.t.len());
+    // Where the load keeps its sign the column is half the stiffness of gravity and motion.
+    let mut moved = Course::of(&robot);
+    moved.q[1].iter_mut().for_each(|q| *q += 1e-5);
+    let stiffness = slope(&torque(&robot, &moved.motion()), &course.tau, 1e-5);
+    let top = course.tau[1]
+        .iter()
+        .fold(0.0, |all: f64, tau| all.max(tau.abs()));
+    let mut seen = 0;
+    for i in 0..course.t.len() {
+        let tau = course.tau[1][i];
+        if tau.abs() > 0.4 * top {
+            let expected = -0.5 * tau.signum() * stiffness[1][i];
+            assert!(
+                (got[1][i] - expected).abs() < 1e-3 * size(&stiffness),
+                "{i}"
+            );
+            seen += 1;
+        }
+    }
+    assert!(seen > 50);
+}
