@@ -25,6 +25,7 @@ pub(super) static ROTOR_INERTIA: Effect = Effect {
     },
     hypotheses: |_, reach| reach.each_joint(),
     columns: |along, joints, shape| along.defined(EffectKind::RotorInertia, joints, shape),
+    described: &[EffectKind::RotorInertia],
     implausible: |_| None,
 };
 
@@ -53,6 +54,7 @@ pub(super) static PAYLOAD: Effect = Effect {
     },
     hypotheses: whole_robot,
     columns: payload,
+    described: &[],
     implausible: |_| None,
 };
 
@@ -69,7 +71,7 @@ fn whole_robot(_: &Effects, reach: &Reach<'_>) -> Vec<Hypothesis> {
 /// The columns of the last link that are not zero.
 fn payload(along: &Along<'_>, _: &[usize], _: &[f64]) -> Vec<TorqueColumn> {
     let last = along.effects.joints().saturating_sub(1);
-    let all = along.effects.rigid().columns(&along.motion());
+    let all = along.effects.tool().columns(&along.motion());
     let own = all.into_iter().skip(10 * last).take(10).enumerate();
     let column = |(place, torque): (usize, Vec<(usize, Vec<f64>)>)| TorqueColumn {
         name: format!("P{}", NAMES[place]),
@@ -98,6 +100,7 @@ pub(super) static BASE_TILT: Effect = Effect {
         false => whole_robot(effects, reach),
     },
     columns: base_tilt,
+    described: &[],
     implausible: |values| {
         let far = values.iter().any(|angle| angle.abs() > 0.35);
         far.then_some("a base that is tilted by more than 20 degrees would have been seen")
@@ -152,6 +155,7 @@ pub(super) static EXTERNAL_FORCE: Effect = Effect {
     },
     hypotheses: whole_robot,
     columns: external_force,
+    described: &[],
     implausible: |_| None,
 };
 
@@ -211,6 +215,7 @@ pub(super) static LINK_LENGTH: Effect = Effect {
         };
         joints.iter().filter_map(column).collect()
     },
+    described: &[],
     implausible: |values| {
         let far = values.first().is_some_and(|length| length.abs() > 0.1);
         far.then_some("a link that is wrong by more than 0.1 m would have been seen")

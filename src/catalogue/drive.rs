@@ -24,6 +24,7 @@ pub(super) static DRIVE_GAIN: Effect = Effect {
             |&joint: &usize| along.column("DG", "1", joint, along.signals.tau_model[joint].clone());
         joints.iter().map(column).collect()
     },
+    described: &[],
     implausible: |values| {
         let wild = values.first().is_some_and(|part| part.abs() > 0.8);
         wild.then_some("the drive's gain would be wrong by more than 80 %")
@@ -52,6 +53,7 @@ pub(super) static DRIVE_SATURATION: Effect = Effect {
         let torque = along.signals.tau_model[joint].iter().map(beyond);
         vec![along.column("DS", "1", joint, torque.collect())]
     },
+    described: &[],
     implausible: |values| {
         let turned = values.first().is_some_and(|part| *part < -1.5);
         turned.then_some("the torque would fall where the drive is asked for more")
@@ -91,6 +93,7 @@ pub(super) static DRIVE_DEAD_ZONE: Effect = Effect {
         };
         joints.iter().map(column).collect()
     },
+    described: &[],
     implausible: |values| {
         let gives = values.first().is_some_and(|lost| *lost < 0.0);
         gives.then_some("the drive would give more than it is asked for near zero")
@@ -126,6 +129,7 @@ pub(super) static TIME_SHIFT: Effect = Effect {
         all
     },
     columns: time_shift,
+    described: &[],
     implausible: |values| {
         let far = values.first().is_some_and(|shift| shift.abs() > 0.1);
         far.then_some("the channels of a log are not more than 0.1 s apart")

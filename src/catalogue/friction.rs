@@ -20,6 +20,7 @@ pub(super) static VISCOUS_ASYMMETRY: Effect = Effect {
     },
     hypotheses: |_, reach| reach.each_joint(),
     columns: |along, joints, shape| along.defined(EffectKind::ViscousAsymmetry, joints, shape),
+    described: &[EffectKind::ViscousAsymmetry],
     implausible: |_| None,
 };
 
@@ -40,6 +41,7 @@ pub(super) static STRIBECK: Effect = Effect {
         reach.each_of(|_| true, grid)
     },
     columns: |along, joints, shape| along.defined(EffectKind::Stribeck, joints, shape),
+    described: &[EffectKind::Stribeck],
     implausible: |values| {
         let falls = values.first().is_some_and(|excess| *excess < 0.0);
         falls.then_some("friction would be less near rest than in sliding: no Stribeck excess")
@@ -60,6 +62,7 @@ pub(super) static NONLINEAR_VISCOUS: Effect = Effect {
     },
     hypotheses: |_, reach| reach.each_of(|_| true, |_| vec![1.3, 1.6, 2.0, 2.5, 3.2, 4.0]),
     columns: |along, joints, shape| along.defined(EffectKind::NonlinearViscous, joints, shape),
+    described: &[EffectKind::NonlinearViscous],
     implausible: |_| None,
 };
 
@@ -79,6 +82,7 @@ pub(super) static POSITION_DEPENDENT_FRICTION: Effect = Effect {
     columns: |along, joints, shape| {
         along.defined(EffectKind::PositionDependentFriction, joints, shape)
     },
+    described: &[EffectKind::PositionDependentFriction],
     implausible: |_| None,
 };
 
@@ -96,6 +100,7 @@ pub(super) static TRANSMISSION_COUPLING: Effect = Effect {
     },
     hypotheses: wrist_pairs,
     columns: |along, joints, shape| along.defined(EffectKind::TransmissionCoupling, joints, shape),
+    described: &[EffectKind::TransmissionCoupling],
     implausible: |values| {
         let drives = values.first().is_some_and(|coulomb| *coulomb < 0.0);
         drives.then_some("friction of the common shaft would be negative")
@@ -152,6 +157,7 @@ pub(super) static LOAD_DEPENDENT_FRICTION: Effect = Effect {
         };
         joints.iter().map(column).collect()
     },
+    described: &[],
     implausible: |values| match values.first() {
         Some(part) if *part < 0.0 => Some("friction would fall under load"),
         Some(part) if *part > 1.0 => Some("friction would be larger than the load that causes it"),

@@ -20,8 +20,8 @@ const STEP: f64 = 1e-4;
 /// Ten standard parameters per link, link by link.
 pub(super) type StandardValues = Vec<[f64; 10]>;
 
-/// The rigid bodies of a mechanism; parameter 10 k + p is the p-th of link k.
-pub(super) fn rigid(mechanism: &Mechanism) -> Linear {
+/// The rigid bodies of a mechanism; parameter 10 k + p is the p-th of link k, wanted or left out.
+pub(super) fn rigid(mechanism: &Mechanism, wanted: impl Fn(usize, usize) -> bool) -> Linear {
     let mut graph = Graph::new();
     let model = derive::standard(&mut graph, mechanism);
     let columns = model.parameters.iter().filter_map(|parameter| {
@@ -29,7 +29,7 @@ pub(super) fn rigid(mechanism: &Mechanism) -> Linear {
             return None;
         };
         let number = 10 * parameter.link + place;
-        Some((number, parameter.columns.explicit.as_slice()))
+        wanted(parameter.link, place).then_some((number, parameter.columns.explicit.as_slice()))
     });
     Linear::new(&graph, mechanism.joints.len(), columns)
 }
@@ -43,7 +43,8 @@ pub(super) fn unit_gravity(description: &Description) -> [Linear; 3] {
             gravity,
             ..description.clone()
         };
-        rigid(&Mechanism::new(&turned))
+        // At rest only first moments and masses weigh anything.
+        rigid(&Mechanism::new(&turned), |_, place| place >= 6)
     })
 }
 
@@ -127,7 +128,7 @@ impl Length {
             let maps = (0..mechanism.joints.len())
                 .map(|link| frame_change(&robot.mechanism, &mechanism, link))
                 .collect();
-            (rigid(&mechanism), maps)
+            (rigid(&mechanism, |_, _| true), maps)
         });
         Some(Length { variants }).filter(|length| length.matters(&robot.mechanism))
     }

@@ -26,6 +26,7 @@ pub(super) static PRESLIDING: Effect = Effect {
     },
     hypotheses: |_, reach| reach.each_of(|_| true, |_| geometric(0.002, 0.08, 6)),
     columns: presliding,
+    described: &[EffectKind::Presliding],
     implausible: |values| {
         let negative = values.first().is_some_and(|friction| *friction < 0.0);
         negative.then_some("friction would be largest before the joint slides: no yielding contact")
@@ -76,6 +77,7 @@ pub(super) static FRICTION_DRIFT: Effect = Effect {
         reach.each_of(|_| true, |_| geometric(1.5, longest, 6))
     },
     columns: friction_drift,
+    described: &[],
     implausible: |_| None,
 };
 
@@ -109,6 +111,7 @@ pub(super) static JOINT_ELASTICITY: Effect = Effect {
     },
     hypotheses: elasticity_grid,
     columns: elasticity,
+    described: &[],
     implausible: |values| match values.first() {
         Some(part) if *part < 0.0 => Some("the stiffness of the joint would be negative"),
         Some(part) if *part > 5.0 => Some("the link would swing more than its resonance makes it"),
@@ -180,6 +183,7 @@ pub(super) static BACKLASH: Effect = Effect {
     },
     hypotheses: |_, reach| reach.each_joint(),
     columns: backlash,
+    described: &[],
     implausible: |values| match values.first() {
         Some(gap) if *gap < 0.0 => Some("the gap would be negative"),
         Some(gap) if *gap > 0.2 => Some("a gap of more than 0.2 rad would have been heard"),

@@ -8,6 +8,7 @@
 
 mod along;
 mod bodies;
+mod described;
 mod drive;
 mod evaluate;
 mod friction;
@@ -22,6 +23,7 @@ mod tests;
 use std::sync::OnceLock;
 
 use idim_codegen::Robot;
+use idim_codegen::catalogue::EffectKind;
 use idim_codegen::derive::ParameterKind;
 use idim_codegen::emit::tables::signals as distinct;
 use idim_codegen::expr::Expr;
@@ -29,6 +31,7 @@ use idim_codegen::mechanism::JointKind;
 use idim_codegen::robot::Output;
 use idim_runtime::diagnose::{Catalogue, ColumnsAlong, Entry, Hypothesis, Signals, TorqueColumn};
 
+pub use described::toml;
 pub use guide::guide;
 
 use along::Along;
@@ -43,6 +46,8 @@ struct Effect {
     hypotheses: fn(&Effects, &Reach<'_>) -> Vec<Hypothesis>,
     /// Its columns with a shape.
     columns: fn(&Along<'_>, &[usize], &[f64]) -> Vec<TorqueColumn>,
+    /// The same as a description asks for it; nothing where it cannot.
+    described: &'static [EffectKind],
     /// Why values of its parameters cannot be.
     implausible: fn(&[f64]) -> Option<&'static str>,
 }
@@ -82,8 +87,8 @@ pub struct Effects {
     robot: Robot,
     /// The smooth part of the present model: rigid bodies, rotor inertias, viscous friction.
     smooth: Linear,
-    /// Standard columns of the rigid bodies.
-    rigid: OnceLock<Linear>,
+    /// Standard columns of the last link.
+    tool: OnceLock<Linear>,
     /// Standard columns under unit gravity along x, y, z of frame 0.
     gravity: OnceLock<[Linear; 3]>,
     /// Per joint, the robot with another length there.
@@ -105,7 +110,7 @@ impl Effects {
         Effects {
             entries: entries(),
             smooth: smooth(robot),
-            rigid: OnceLock::new(),
+            tool: OnceLock::new(),
             gravity: OnceLock::new(),
             lengths: robot
                 .mechanism
@@ -129,9 +134,11 @@ impl Effects {
         self.kind(joint) == JointKind::Revolute
     }
 
-    fn rigid(&self) -> &Linear {
-        self.rigid
-            .get_or_init(|| geometry::rigid(&self.robot.mechanism))
+    fn tool(&self) -> &Linear {
+        self.tool.get_or_init(|| {
+            let last = self.joints().saturating_sub(1);
+            geometry::rigid(&self.robot.mechanism, |link, _| link == last)
+        })
     }
 
     fn gravity(&self) -> &[Linear; 3] {

@@ -21,6 +21,7 @@ pub(super) static TORQUE_OFFSET: Effect = Effect {
     },
     hypotheses: |_, reach| reach.each_joint(),
     columns: |along, joints, shape| along.defined(EffectKind::Offset, joints, shape),
+    described: &[EffectKind::Offset],
     implausible: |_| None,
 };
 
@@ -41,6 +42,7 @@ pub(super) static TORQUE_RIPPLE: Effect = Effect {
         reach.each_of(|joint| effects.is_revolute(joint), |_| whole(2, 20))
     },
     columns: |along, joints, shape| along.defined(EffectKind::TorqueRipple, joints, shape),
+    described: &[EffectKind::TorqueRipple],
     implausible: |_| None,
 };
 
@@ -62,6 +64,7 @@ pub(super) static SPRING: Effect = Effect {
         columns.extend(along.defined(EffectKind::Offset, joints, &[]));
         columns
     },
+    described: &[EffectKind::Spring, EffectKind::Offset],
     implausible: |_| None,
 };
 
@@ -79,6 +82,7 @@ pub(super) static END_STOP: Effect = Effect {
     },
     hypotheses: end_stops,
     columns: |along, joints, shape| along.defined(EffectKind::EndStop, joints, shape),
+    described: &[EffectKind::EndStop],
     implausible: |values| {
         let pulls = values.first().is_some_and(|stiffness| *stiffness < 0.0);
         pulls.then_some("the stop would pull into the limit: its stiffness is negative")
@@ -125,6 +129,7 @@ pub(super) static ENCODER_ECCENTRICITY: Effect = Effect {
         reach.each_of(|joint| effects.is_revolute(joint), |_| whole(2, 14))
     },
     columns: eccentricity,
+    described: &[],
     implausible: |values| {
         let size = values.iter().fold(0.0, |sum: f64, value| sum.hypot(*value));
         (size > 0.1).then_some("an encoder is not wrong by more than 0.1 rad")

@@ -161,7 +161,7 @@ impl Course {
 /// Inverse dynamics of the described rigid bodies.
 pub fn torque(robot: &Robot, motion: &Motion<'_>) -> Vec<Vec<f64>> {
     let x: Vec<f64> = described(robot).into_iter().flatten().collect();
-    rigid(&robot.mechanism).torque(motion, &x)
+    rigid(&robot.mechanism, |_, _| true).torque(motion, &x)
 }
 
 /// Base parameters of the described rigid bodies.

@@ -8,6 +8,7 @@
 
 mod arm;
 mod bodies;
+mod described;
 mod formulas;
 mod listing;
 mod signals;
