@@ -131,14 +131,15 @@ fn standing<'a>(along: &Along<'a>) -> Motion<'a> {
 
 /// Torques under unit gravity along three axes, for gravity along a direction.
 fn combined(axes: &[Vec<Vec<f64>>; 3], direction: [f64; 3]) -> Vec<(usize, Vec<f64>)> {
-    let [x, y, z] = axes;
-    let [a, b, c] = direction;
-    let of_joint = |(joint, ((x, y), z)): (usize, ((&Vec<f64>, &Vec<f64>), &Vec<f64>))| {
+    let joints = axes[0].len();
+    let of_joint = |joint: usize| {
+        let [x, y, z] = axes.each_ref().map(|torque| &torque[joint]);
+        let [a, b, c] = direction;
         let sums = x.iter().zip(y).zip(z);
         let torque = sums.map(|((x, y), z)| a * x + b * y + c * z).collect();
         (joint, torque)
     };
-    x.iter().zip(y).zip(z).enumerate().map(of_joint).collect()
+    (0..joints).map(of_joint).collect()
 }
 
 pub(super) static EXTERNAL_FORCE: Effect = Effect {

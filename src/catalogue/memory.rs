@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 
 use idim_codegen::catalogue::EffectKind;
 use idim_runtime::diagnose::{Entry, EntryKind, Hypothesis, TorqueColumn};
+use idim_runtime::observe::dahl;
 
 use super::along::{Along, Displacement};
 use super::drive::direction;
@@ -37,27 +38,12 @@ fn presliding(along: &Along<'_>, joints: &[usize], shape: &[f64]) -> Vec<TorqueC
     let (&[joint], &[zs]) = (joints, shape) else {
         return Vec::new();
     };
-    let slip = dahl(&along.signals.qd[joint], along.signals.rate_hz, zs);
+    let slip = dahl(&along.signals.qd[joint], along.signals.rate_hz, zs, 0.0);
     let motion = Motion {
         slip: Some((joint, &slip)),
         ..along.motion()
     };
     along.defined_along(&motion, EffectKind::Presliding, joints, shape)
-}
-
-/// z/zs of Dahl's contact from rest in the middle of its range: exact for a velocity that is
-/// constant over a sample, so that no step is too long for it.
-pub(super) fn dahl(qd: &[f64], rate_hz: f64, zs: f64) -> Vec<f64> {
-    let mut state = 0.0;
-    let step = |(i, qd): (usize, &f64)| {
-        if i > 0 {
-            let kept = (-qd.abs() / (rate_hz * zs)).exp();
-            let direction = if *qd < 0.0 { -1.0 } else { 1.0 };
-            state = direction + (state - direction) * kept;
-        }
-        state
-    };
-    qd.iter().enumerate().map(step).collect()
 }
 
 pub(super) static FRICTION_DRIFT: Effect = Effect {

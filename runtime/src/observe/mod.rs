@@ -23,6 +23,7 @@ pub(crate) use motion::rests;
 pub use motion::{Motion, check, check_torque};
 pub(crate) use regressor::contract;
 pub use regressor::decimated;
+pub use slip::dahl;
 pub(crate) use stretch::stretch;
 pub use torque::{Torque, filtered_torque};
 

@@ -26,8 +26,9 @@ pub(super) fn along(
 }
 
 /// \\( \dot z = \dot q - |\dot q| z / z_s \\) (Dahl 1968), as \\( z / z_s \\): exact for a velocity that
-/// is constant over a sample, so that no step is too long for it.
-fn dahl(qd: &[f64], rate_hz: f64, zs: f64, begin: f64) -> Vec<f64> {
+/// is constant over a sample, so that no step is too long for it. `zs` in rad or m, at the first
+/// sample the state `begin`.
+pub fn dahl(qd: &[f64], rate_hz: f64, zs: f64, begin: f64) -> Vec<f64> {
     let mut state = begin;
     let step = |(i, qd): (usize, &f64)| {
         if i > 0 {

@@ -1,8 +1,10 @@
 //! Errors of the signals to first order, and states that run along the motion.
 
+use idim_runtime::observe::dahl;
+
 use super::arm::{Course, PLAIN, RATE, apart, size, slope, spread, torque};
 use crate::catalogue::Effects;
-use crate::catalogue::memory::{dahl, resonance};
+use crate::catalogue::memory::resonance;
 
 #[test]
 fn an_eccentric_encoder_moves_the_torque_to_first_order() {
@@ -31,14 +33,27 @@ fn a_torque_that_is_ahead_differs_by_its_rate() {
     let course = Course::of(&robot);
     let columns = course.columns(&Effects::new(&robot), "time_shift", &[], &[]);
     let got = spread(&columns[0], course.t.len());
-    // One sample ahead minus one behind, over two sampling intervals: away from the ends the
-    // same, up to the curvature of the torque.
-    for joint in 0..4 {
-        for i in 1..course.t.len() - 1 {
-            let tau = &course.tau[joint];
-            let expected = (tau[i + 1] - tau[i - 1]) * 0.5 * RATE;
-            assert!((got[joint][i] - expected).abs() < 1e-9 * expected.abs().max(1.0));
+    // The torque of the motion a moment later, as a function of time: 1e-4 s ahead.
+    let ahead = 1e-4;
+    let mut later = Course::of(&robot);
+    for i in 0..later.t.len() {
+        for joint in 0..4 {
+            let (qd, qdd) = (course.qd[joint][i], course.qdd[joint][i]);
+            // Each joint swings at its own frequency: its jerk is -w^2 qd.
+            let w = 2.0 + 0.7 * joint as f64;
+            later.q[joint][i] += ahead * qd;
+            later.qd[joint][i] += ahead * qdd;
+            later.qdd[joint][i] -= ahead * w * w * qd;
         }
+    }
+    let expected = slope(&torque(&robot, &later.motion()), &course.tau, ahead);
+    // Central differences at 200 Hz: (w dt)^2 / 6 of the fastest part of the torque, at the ends
+    // one-sided.
+    for (got, expected) in got.iter().zip(&expected) {
+        let inside = 1..course.t.len() - 1;
+        let (got, expected) = (&got[inside.clone()], &expected[inside]);
+        let miss = apart(&[got.to_vec()], &[expected.to_vec()]);
+        assert!(miss < 0.01 * size(&[expected.to_vec()]).max(1.0), "{miss}");
     }
     assert_eq!((columns.len(), columns[0].name.as_str()), (1, "TSH"));
     let one = course.columns(&Effects::new(&robot), "time_shift", &[2], &[]);
@@ -49,7 +64,7 @@ fn a_torque_that_is_ahead_differs_by_its_rate() {
 fn a_yielding_contact_builds_up_friction_as_dahl_says() {
     // From rest at constant speed: z/zs = 1 - exp(-qd t / zs).
     let (speed, zs) = (0.1, 0.01);
-    let state = dahl(&vec![speed; 400], RATE, zs);
+    let state = dahl(&vec![speed; 400], RATE, zs, 0.0);
     for (i, state) in state.iter().enumerate() {
         let expected = -(-speed * i as f64 / RATE / zs).exp_m1();
         assert!((state - expected).abs() < 1e-12);
@@ -57,7 +72,7 @@ fn a_yielding_contact_builds_up_friction_as_dahl_says() {
     let robot = PLAIN.robot();
     let course = Course::of(&robot);
     let columns = course.columns(&Effects::new(&robot), "presliding", &[0], &[zs]);
-    let slip = dahl(&course.qd[0], RATE, zs);
+    let slip = dahl(&course.qd[0], RATE, zs, 0.0);
     let sign = |qd: f64| (qd / 0.05).clamp(-1.0, 1.0);
     for (i, torque) in columns[0].torque[0].1.iter().enumerate() {
         assert!((torque - (slip[i] - sign(course.qd[0][i]))).abs() < 1e-12);
