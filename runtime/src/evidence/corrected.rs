@@ -35,8 +35,12 @@ const PER_COSINE: usize = 3;
 const MOST: usize = 32;
 
 /// A variance whose expectation is a smaller share of the true one than this cannot be corrected:
-/// the parameter hangs on one or two blocks.
+/// the parameter hangs on one or two blocks. Evenly spread information gives one over the number of
+/// blocks, so that of more than [`USUAL`] blocks less is asked.
 const LEAST_SHARE: f64 = 0.02;
+
+/// Blocks of one log, for which the least share is meant.
+const USUAL: f64 = 32.0;
 
 impl Evidence {
     /// Covariance of an estimate of this evidence that respects the autocorrelation of residuals
@@ -101,7 +105,8 @@ fn correction(scores: &Scores, cosines: &Mat<f64>, fit: &Fit, i: usize) -> (f64,
     let covariance = weighted * cosines.transpose() - common.transpose() * &common;
     let trace: f64 = (0..count).map(|k| covariance[(k, k)]).sum();
     let truth = u.squared_norm_l2();
-    match trace > LEAST_SHARE * truth * count as f64 {
+    let least = LEAST_SHARE * (USUAL / blocks as f64).min(1.0);
+    match trace > least * truth * count as f64 {
         true => (
             (truth / trace).sqrt(),
             trace.powi(2) / covariance.squared_norm_l2(),

@@ -28,6 +28,26 @@ fn both_corrections_agree_with_the_classical_sigma_on_white_errors() {
 }
 
 #[test]
+fn several_logs_have_corrected_sigmas_as_one_has() {
+    // 32 blocks each: none holds as large a share as those of a single log.
+    let logs: Vec<_> = (1..=4)
+        .map(|k| gather(&random(k), Cut::default()))
+        .collect();
+    let mut together = logs[0].clone();
+    for more in &logs[1..] {
+        together.merge(more).unwrap();
+    }
+    let fit = together
+        .fit(&Question::parameters(&together, Weighting::Residual))
+        .unwrap();
+    let corrected = together.corrected(&fit).unwrap();
+    for k in [0, 1] {
+        let ratio = corrected.sigma[k].unwrap() / fit.sigma[k].unwrap();
+        assert!((0.6..1.6).contains(&ratio), "column {k}: {ratio}");
+    }
+}
+
+#[test]
 fn covariance_matrix_has_the_variances_on_its_diagonal() {
     let evidence = gather(&random(2), Cut::default());
     let fit = evidence
