@@ -15,7 +15,7 @@ use idim::runtime::settings::{Edges, Velocity, Weights};
 
 use super::progress::Spinner;
 use super::simulate::parameters;
-use super::{Failure, fits, output, robot};
+use super::{Failure, fits, gains, output, robot};
 
 /// Arguments of `idim identify`.
 #[derive(Debug, clap::Args)]
@@ -46,6 +46,8 @@ pub struct Arguments {
     /// [parameters] table.
     #[arg(long, value_name = "FILE", requires = "payload")]
     nominal: Option<PathBuf>,
+    #[command(flatten)]
+    known: gains::Load,
     /// Log companion, instead of the .toml beside each log.
     #[arg(long, value_name = "FILE")]
     map: Option<PathBuf>,
@@ -195,9 +197,19 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let spinner = Spinner::new(arguments.quiet);
     let model = robot::model(&arguments.robot)?;
     let options = arguments.choices.options();
+    let known = arguments.known.known(&options, model.joints().len())?;
     let map = arguments.map.as_deref();
     let read = |logs| read(model.as_ref(), logs, (map, &options), &spinner);
     let train = read(&arguments.logs)?;
+    if let Some(known) = known {
+        let (unloaded, loaded) = (
+            recordings(&train)?,
+            recordings(&read(&arguments.known.loaded)?)?,
+        );
+        let files = (arguments.json.as_deref(), arguments.quiet);
+        let logs = (unloaded.as_slice(), loaded.as_slice());
+        return gains::report(model.as_ref(), logs, (&known, &options), files, &spinner);
+    }
     if let Some(link) = arguments.payload {
         return load(model.as_ref(), link, &train, arguments, &spinner);
     }
@@ -251,10 +263,7 @@ fn load(
         Some(path) => parameters::read(path, model, &robot::derived(&arguments.robot)?)?,
         None => described(model)?,
     };
-    let logs: Vec<Recording> = logs
-        .iter()
-        .map(|(log, _)| held(log))
-        .collect::<Result<_, _>>()?;
+    let logs = recordings(logs)?;
     let options = arguments.choices.options();
     let found = payload(model, &logs, (&nominal, link), &options, spinner)?;
     spinner.finish();
@@ -343,6 +352,10 @@ fn beginnings(logs: &[Log]) -> Result<Vec<Recording>, Failure> {
 /// The recordings of logs that are held in memory.
 fn all_held(logs: &[Log]) -> Result<Vec<Recording>, Failure> {
     logs.iter().map(held).collect()
+}
+
+fn recordings(logs: &[(Log, Companion)]) -> Result<Vec<Recording>, Failure> {
+    logs.iter().map(|(log, _)| held(log)).collect()
 }
 
 fn held(log: &Log) -> Result<Recording, Failure> {

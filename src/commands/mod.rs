@@ -6,6 +6,7 @@ mod demo;
 mod describe;
 mod failure;
 mod fits;
+mod gains;
 mod generate;
 mod identify;
 mod output;

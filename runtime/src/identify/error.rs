@@ -95,6 +95,43 @@ pub enum IdentifyError {
         /// Links there are.
         links: usize,
     },
+    /// A known load that weighs nothing, less, or no finite number.
+    #[error(
+        "a known load of {mass} kg cannot set the scale of the torques: give its mass, a positive \
+         number of kg"
+    )]
+    LoadMass {
+        /// What was given.
+        mass: f64,
+    },
+    /// A centre of mass that is not three finite numbers.
+    #[error("the centre of mass of the known load is not three finite numbers of m")]
+    LoadCentre,
+    /// A joint without any motion has no gain.
+    #[error(
+        "joint {joint} ({name}) never moves in {logs}: the factor of its torque cannot be told; \
+         record logs in which every joint moves, without load and with it"
+    )]
+    JointRests {
+        /// Joint, counted from 1.
+        joint: usize,
+        /// Its name.
+        name: String,
+        /// Names of the logs.
+        logs: String,
+    },
+    /// A known load of which no joint tells anything.
+    #[error(
+        "no joint of {robot} feels what is known of the load on link {link}, so it sets no scale \
+         for the torques; mount the load where a joint must lift or accelerate it, or give its \
+         centre of mass too"
+    )]
+    LoadUnfelt {
+        /// The robot.
+        robot: String,
+        /// Link, counted from 1.
+        link: usize,
+    },
     /// The equations cannot be reduced to evidence.
     #[error("the {} model: {message}", model.name())]
     Evidence {

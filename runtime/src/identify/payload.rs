@@ -1,15 +1,15 @@
 //! A load on a link: its ten parameters relative to a robot whose own are known.
 
 use super::corrected::corrected;
+use super::other_columns::{OtherColumns, column};
 use super::{IdentifyError, Observed, Options, Progress, score};
 use crate::estimate::{Estimate, estimate};
 use crate::evidence::{Cut, Evidence};
 use crate::knowledge::{STANDARD, STANDARD_UNITS};
 use crate::log::Recording;
-use crate::model::{Column, ColumnKind, IdentificationModel, Joint, Output, Pattern, States};
+use crate::model::{Column, ColumnKind, IdentificationModel};
 use crate::observe::{Equations, ModelKind, Observations};
 use crate::report::{LoadParameter, Payload, Physical};
-use crate::settings::Settings;
 
 /// Identifies the ten standard parameters of a load fixed to a link (counted from 0), in the
 /// frame of that link, from `logs` with the load and the np parameters `nominal` of the robot
@@ -28,7 +28,8 @@ pub fn payload(
     progress: &dyn Progress,
 ) -> Result<Payload, IdentifyError> {
     let np = model.columns().len();
-    let carried = carried(model, (nominal, link))?;
+    check(model, nominal)?;
+    let carried = carried(model, link)?;
     let asked = Options {
         models: vec![ModelKind::Explicit],
         ..options.clone()
@@ -49,7 +50,7 @@ pub fn payload(
             source,
         }
     })?;
-    let on_load = Load::of(model, link);
+    let on_load = OtherColumns::new(model, columns(link).collect());
     let evidence = Evidence::from_observations(&on_load, &load, &[], Cut::default())
         .map_err(IdentifyError::evidence(kind))?;
     let sigmas = corrected(&on_load, &evidence, plan.weights);
@@ -73,20 +74,25 @@ pub fn payload(
     })
 }
 
-/// The columns of K of the link, if everything fits the robot.
-fn carried(
-    model: &dyn IdentificationModel,
-    (nominal, link): (&[f64], usize),
-) -> Result<[Vec<f64>; 10], IdentifyError> {
+/// Whether the parameters of the robot without load are as many as it has.
+fn check(model: &dyn IdentificationModel, nominal: &[f64]) -> Result<(), IdentifyError> {
     let np = model.columns().len();
-    if nominal.len() != np {
-        return Err(IdentifyError::Parameters {
+    match nominal.len() == np {
+        true => Ok(()),
+        false => Err(IdentifyError::Parameters {
             robot: model.name().to_owned(),
             has: nominal.len(),
             needs: np,
-        });
+        }),
     }
-    let carried = model.knowledge().carried(link, np);
+}
+
+/// The columns of K of the link, if a joint feels any of them.
+pub(super) fn carried(
+    model: &dyn IdentificationModel,
+    link: usize,
+) -> Result<[Vec<f64>; 10], IdentifyError> {
+    let carried = model.knowledge().carried(link, model.columns().len());
     match carried.iter().flatten().all(|factor| *factor == 0.0) {
         true => Err(IdentifyError::NoLink {
             robot: model.name().to_owned(),
@@ -124,7 +130,7 @@ fn seen(block: &Equations, nominal: &[f64], carried: &[Vec<f64>; 10]) -> Equatio
         y: block.y.as_ref().map(|_| block.residual(nominal)),
     };
     for (parameter, factors) in carried.iter().enumerate() {
-        if block.columns.iter().any(|column| factors[*column] != 0.0) {
+        if felt(block, factors) {
             equations.columns.push(parameter);
             equations.w.extend(block.product(factors));
         }
@@ -132,49 +138,19 @@ fn seen(block: &Equations, nominal: &[f64], carried: &[Vec<f64>; 10]) -> Equatio
     equations
 }
 
-/// The load as a robot of its own: ten columns on the joints of the robot that carries it.
-struct Load<'a> {
-    robot: &'a dyn IdentificationModel,
-    columns: Vec<Column>,
-    nothing: Pattern,
+/// Whether a joint sees a parameter of the load.
+pub(super) fn felt(block: &Equations, factors: &[f64]) -> bool {
+    block.columns.iter().any(|column| factors[*column] != 0.0)
 }
 
-impl<'a> Load<'a> {
-    fn of(robot: &'a dyn IdentificationModel, link: usize) -> Self {
-        let column = |k: usize| Column {
-            name: STANDARD[k].into(),
-            unit: STANDARD_UNITS[k].into(),
-            joint: link + 1,
-            kind: ColumnKind::Inertial,
-            meaning: "of the load".into(),
-            relation: STANDARD[k].into(),
-        };
-        Load {
-            robot,
-            columns: (0..STANDARD.len()).map(column).collect(),
-            nothing: Pattern {
-                entries: (&[]).into(),
-                signals: 0,
-            },
-        }
-    }
-}
-
-impl IdentificationModel for Load<'_> {
-    fn name(&self) -> &str {
-        self.robot.name()
-    }
-    fn joints(&self) -> &[Joint] {
-        self.robot.joints()
-    }
-    fn columns(&self) -> &[Column] {
-        &self.columns
-    }
-    fn pattern(&self, _output: Output) -> &Pattern {
-        &self.nothing
-    }
-    fn settings(&self) -> &Settings {
-        self.robot.settings()
-    }
-    fn evaluate(&self, _output: Output, _states: &States<'_>, _signals: &mut [f64]) {}
+/// The ten columns of a load on a link.
+pub(super) fn columns(link: usize) -> impl Iterator<Item = Column> {
+    let named = STANDARD.iter().zip(STANDARD_UNITS);
+    named.map(move |(name, unit)| {
+        column(
+            (name, unit),
+            (link + 1, ColumnKind::Inertial),
+            "of the load",
+        )
+    })
 }

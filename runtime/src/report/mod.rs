@@ -3,6 +3,7 @@
 //! [`Identification`] is all that is said about an identification: its JSON is the machine
 //! readable report, and [`terminal()`] and [`html()`] render nothing but this value.
 
+mod gains;
 mod html;
 mod identification;
 mod instrumented;
@@ -13,6 +14,7 @@ mod table;
 mod terminal;
 mod thin;
 
+pub use gains::{DriveGains, GainFactor, terminal as gains_terminal};
 pub use html::html;
 pub use identification::{
     Fit, Identification, InstrumentedFit, InstrumentedValue, JointFit, ModelResult,
