@@ -5,6 +5,7 @@
 //! what is observed, collects what is to be said about it, and scores the result.
 
 mod choice;
+mod compare;
 mod corrected;
 mod error;
 mod excited;
@@ -102,7 +103,12 @@ pub fn identify<L: Samples>(
         }
         models.push(found);
     }
-    warnings.extend(warnings::of_results(&models));
+    let disagreements = compare::disagreements(&models);
+    let fails = warnings::of_results(&models);
+    if fails.is_none() {
+        warnings.extend(compare::sentences(&disagreements));
+    }
+    warnings.extend(fails);
     Ok(Identification {
         robot: model.name().to_owned(),
         samples: train.iter().map(|log| log.len()).sum(),
@@ -112,6 +118,7 @@ pub fn identify<L: Samples>(
         weights: plan.weights,
         warnings: warnings::once_each(warnings),
         models,
+        disagreements,
         command: None,
         truth: None,
         series: Vec::new(),

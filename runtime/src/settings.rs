@@ -53,6 +53,19 @@ pub enum Velocity {
     Measured,
 }
 
+/// How signals are differentiated.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Derivatives {
+    /// Central differences of the two neighbours (Gautier 1996, section 6.2): their gain falls as
+    /// \\( \sin(\omega T) / \omega T \\).
+    #[default]
+    Central,
+    /// Central differences of eighth order (Fornberg 1988), right to 1e-3 up to 0.45 of the half
+    /// rate. Below what they and the sensor's noise leave uncertain, a velocity counts as zero.
+    Eighth,
+}
+
 /// A robot's own defaults; `None` leaves the choice to the runtime.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Settings {

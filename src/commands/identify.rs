@@ -11,7 +11,7 @@ use idim::runtime::log::{self, Companion, Log, LogSpec, ReadOptions, Recording};
 use idim::runtime::model::IdentificationModel;
 use idim::runtime::observe::ModelKind;
 use idim::runtime::report::{Identification, Role, html, payload_terminal, terminal};
-use idim::runtime::settings::{Edges, Velocity, Weights};
+use idim::runtime::settings::{Derivatives, Edges, Velocity, Weights};
 
 use super::progress::Spinner;
 use super::simulate::parameters;
@@ -86,6 +86,10 @@ pub struct Choices {
     /// Edge rule of the filters.
     #[arg(long, value_enum)]
     edges: Option<EdgeRule>,
+    /// Differences of two neighbours (central), or of eighth order with a zero velocity where it is
+    /// uncertain (eighth): the default where no edge rule is given.
+    #[arg(long, value_enum)]
+    derivatives: Option<Differences>,
     /// Weights of the equations.
     #[arg(long, value_enum)]
     weights: Option<Weighting>,
@@ -127,6 +131,12 @@ enum EdgeRule {
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
+enum Differences {
+    Central,
+    Eighth,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
 enum Weighting {
     None,
     Joint,
@@ -163,6 +173,10 @@ impl Choices {
             edges: self.edges.map(|edges| match edges {
                 EdgeRule::Matlab => Edges::Matlab,
                 EdgeRule::Scipy => Edges::Scipy,
+            }),
+            derivatives: self.derivatives.map(|by| match by {
+                Differences::Central => Derivatives::Central,
+                Differences::Eighth => Derivatives::Eighth,
             }),
             weights: self.weights.map(|weights| match weights {
                 Weighting::None => Weights::None,

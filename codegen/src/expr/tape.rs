@@ -157,7 +157,12 @@ fn read(batch: &Batch<'_>, input: Input, start: usize, width: usize) -> Register
 
 /// The first `width` values of two registers, pair by pair: a single state costs one operation,
 /// not a register full of them.
+#[inline(always)]
 fn zip(a: &Register, b: &Register, width: usize, f: impl Fn(f64, f64) -> f64) -> Register {
+    // Whole registers, of a length known beforehand, run through the vector units.
+    if width == WIDTH {
+        return std::array::from_fn(|i| f(a[i], b[i]));
+    }
     let mut out = [0.0; WIDTH];
     for ((out, a), b) in out.iter_mut().zip(a).zip(b).take(width) {
         *out = f(*a, *b);

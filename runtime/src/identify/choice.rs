@@ -3,7 +3,7 @@
 use super::{IdentifyError, excited};
 use crate::log::{Recording, Samples};
 use crate::observe::rests;
-use crate::settings::Edges;
+use crate::settings::{Derivatives, Edges};
 use crate::signal::bandwidth;
 
 /// Order of the Butterworth prefilter: more than 2, so that two differentiations stay band-pass
@@ -19,6 +19,9 @@ const FP_OVER_DYN: f64 = 5.0;
 /// The prefilter stays below this share of half the sampling rate, where central differences
 /// still are derivatives.
 const FQ_OVER_NYQUIST: f64 = 0.4;
+
+/// The same for differences of eighth order.
+const FQ_OVER_NYQUIST_EIGHTH: f64 = 0.55;
 
 /// Cut-off of the decimation's low-pass over half the decimated rate.
 const FP_OVER_DECIMATED: f64 = 0.8;
@@ -45,7 +48,7 @@ pub(super) fn from_logs(
     logs: &[&dyn Samples],
     looks: &[Recording],
     parameters: usize,
-    edges: Edges,
+    (edges, derivatives): (Edges, Derivatives),
     given: (Option<f64>, Option<usize>, Option<usize>),
 ) -> Result<Chosen, IdentifyError> {
     let rate_hz = slowest_rate(logs)?;
@@ -64,7 +67,7 @@ pub(super) fn from_logs(
         .filter(|(_, is_open)| *is_open)
         .map(|(name, _)| name)
         .collect();
-    let fq_hz = fq.unwrap_or_else(|| cut_off(dyn_hz, rate_hz));
+    let fq_hz = fq.unwrap_or_else(|| cut_off(dyn_hz, rate_hz, derivatives));
     let nd = nd.unwrap_or_else(|| ratio(dyn_hz, rate_hz, logs, parameters));
     let trim = trim.unwrap_or_else(|| edge(fq_hz, rate_hz, nd, edges));
     Ok(Chosen {
@@ -124,8 +127,12 @@ fn motion_band(logs: &[Recording]) -> Result<f64, IdentifyError> {
 }
 
 /// Cut-off of the prefilter, Hz, to two digits.
-fn cut_off(dyn_hz: f64, rate_hz: f64) -> f64 {
-    two_digits((FQ_OVER_DYN * dyn_hz).min(FQ_OVER_NYQUIST * rate_hz / 2.0))
+fn cut_off(dyn_hz: f64, rate_hz: f64, derivatives: Derivatives) -> f64 {
+    let highest = match derivatives {
+        Derivatives::Central => FQ_OVER_NYQUIST,
+        Derivatives::Eighth => FQ_OVER_NYQUIST_EIGHTH,
+    };
+    two_digits((FQ_OVER_DYN * dyn_hz).min(highest * rate_hz / 2.0))
 }
 
 fn two_digits(x: f64) -> f64 {
@@ -183,8 +190,14 @@ mod tests {
     #[test]
     fn filters_follow_the_band_of_the_motion() {
         let logs = [log(2.0, 1000.0, 10_000)];
-        let chosen =
-            from_logs(&sources(&logs), &logs, 5, Edges::Scipy, (None, None, None)).unwrap();
+        let chosen = from_logs(
+            &sources(&logs),
+            &logs,
+            5,
+            (Edges::Scipy, Derivatives::Central),
+            (None, None, None),
+        )
+        .unwrap();
         assert!((20.0..25.0).contains(&chosen.fq_hz), "{}", chosen.fq_hz);
         assert!((32..=40).contains(&chosen.nd), "{}", chosen.nd);
         assert_eq!(chosen.names, ["fq_hz", "nd", "trim"]);
@@ -197,7 +210,7 @@ mod tests {
             &sources(&logs),
             &logs,
             5,
-            Edges::Matlab,
+            (Edges::Matlab, Derivatives::Central),
             (Some(7.0), Some(3), Some(0)),
         )
         .unwrap();
@@ -208,8 +221,14 @@ mod tests {
     #[test]
     fn a_short_log_is_decimated_less() {
         let logs = [log(1.0, 1000.0, 3000)];
-        let chosen =
-            from_logs(&sources(&logs), &logs, 30, Edges::Scipy, (None, None, None)).unwrap();
+        let chosen = from_logs(
+            &sources(&logs),
+            &logs,
+            30,
+            (Edges::Scipy, Derivatives::Central),
+            (None, None, None),
+        )
+        .unwrap();
         assert_eq!(chosen.nd, 10);
     }
 
@@ -223,7 +242,14 @@ mod tests {
     #[test]
     fn logs_without_motion_or_rate_are_errors() {
         let logs = [log(0.0, 100.0, 500)];
-        let error = from_logs(&sources(&logs), &logs, 5, Edges::Scipy, (None, None, None)).err();
+        let error = from_logs(
+            &sources(&logs),
+            &logs,
+            5,
+            (Edges::Scipy, Derivatives::Central),
+            (None, None, None),
+        )
+        .err();
         assert_eq!(
             error,
             Some(IdentifyError::NothingMoves {
@@ -231,13 +257,27 @@ mod tests {
                 seen: "q1 constant".into(),
             })
         );
-        let error = from_logs(&[], &[], 5, Edges::Scipy, (None, None, None)).err();
+        let error = from_logs(
+            &[],
+            &[],
+            5,
+            (Edges::Scipy, Derivatives::Central),
+            (None, None, None),
+        )
+        .err();
         assert_eq!(error, Some(IdentifyError::NoLogs));
         let logs = [Recording {
             rate_hz: f64::NAN,
             ..log(1.0, 100.0, 500)
         }];
-        let error = from_logs(&sources(&logs), &logs, 5, Edges::Scipy, (None, None, None)).err();
+        let error = from_logs(
+            &sources(&logs),
+            &logs,
+            5,
+            (Edges::Scipy, Derivatives::Central),
+            (None, None, None),
+        )
+        .err();
         assert!(matches!(error, Some(IdentifyError::Rate { .. })));
     }
 }

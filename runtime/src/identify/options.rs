@@ -4,7 +4,7 @@ use super::{IdentifyError, choice, excited};
 use crate::log::Samples;
 use crate::model::IdentificationModel;
 use crate::observe::{Filtering, ModelKind, check};
-use crate::settings::{Edges, Freedom, Velocity, Weights};
+use crate::settings::{Derivatives, Edges, Freedom, Velocity, Weights};
 
 /// Choices of the user. Each that is `None` is taken from the robot's settings
 /// ([`IdentificationModel::settings`]), and failing that from the data.
@@ -24,6 +24,8 @@ pub struct Options {
     pub border: Option<(usize, usize)>,
     /// Edge rule.
     pub edges: Option<Edges>,
+    /// How signals are differentiated.
+    pub derivatives: Option<Derivatives>,
     /// Source of the velocity.
     pub velocity: Option<Velocity>,
     /// Whether the torque passes the prefilter too.
@@ -71,6 +73,11 @@ impl Options {
         train: &[L],
     ) -> Result<Plan, IdentifyError> {
         let set = model.settings();
+        // Edges of Matlab or SciPy are asked for where their numbers are to be reproduced.
+        let derivatives = self.derivatives.unwrap_or(match self.edges.or(set.edges) {
+            Some(_) => Derivatives::Central,
+            None => Derivatives::Eighth,
+        });
         let edges = self.edges.or(set.edges).unwrap_or(Edges::Scipy);
         let order = self.order.or(set.order).unwrap_or(choice::ORDER);
         let (fq_hz, nd) = (self.fq_hz.or(set.fq_hz), self.nd.or(set.nd));
@@ -86,7 +93,8 @@ impl Options {
         }
         excited::check(&looks)?;
         let (np, given) = (model.columns().len(), (fq_hz, nd, trim));
-        let chosen = choice::from_logs(&train, &looks, np, edges, given)?;
+        let by = (edges, derivatives);
+        let chosen = choice::from_logs(&train, &looks, np, by, given)?;
         let filtering = Filtering {
             fq_hz: chosen.fq_hz,
             order,
@@ -94,6 +102,7 @@ impl Options {
             trim: chosen.trim,
             border: self.border.or(set.border).unwrap_or((0, 0)),
             edges,
+            derivatives,
             velocity: self.velocity.or(set.velocity).unwrap_or(Velocity::Derived),
             prefilter_torque: self
                 .prefilter_torque

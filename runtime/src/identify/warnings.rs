@@ -15,7 +15,7 @@ const POWER_FAILS: f64 = 2.0;
 const CONTRADICTED: f64 = 3.0;
 
 /// A named list longer than this is cut short.
-const LONGEST_LIST: usize = 12;
+pub(super) const LONGEST_LIST: usize = 12;
 
 /// Warnings of the logs themselves, and of logs that do not go together.
 pub(super) fn of_logs<L: Samples>(

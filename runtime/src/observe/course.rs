@@ -5,11 +5,11 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use super::equations::{rows_kept, touched};
-use super::motion::{Motion, REST};
+use super::motion::{Motion, REST, taken_away};
 use super::{Filtering, ObserveError, check, check_torque, slip};
 use crate::log::Samples;
 use crate::model::IdentificationModel;
-use crate::signal::{Decimator, ZeroPhase};
+use crate::signal::{Decimator, REACH, ZeroPhase};
 
 /// Samples that are looked at together.
 pub(super) const WINDOW: usize = 8192;
@@ -24,6 +24,8 @@ pub(crate) struct Course<'a> {
     pub decimator: Decimator,
     /// Joints that never move, counted from 0, and the positions they are held at.
     resting: Vec<(usize, f64)>,
+    /// Mean square of what the prefilter takes away from each joint's position.
+    taken: Vec<f64>,
     /// Presliding states at every [`WINDOW`]-th sample, joint by joint; empty without a memory.
     slips: Vec<Vec<f64>>,
     /// The samples between those cut off before the parallel filter.
@@ -68,11 +70,13 @@ impl<'a> Course<'a> {
             prefilter,
             decimator,
             resting: resting(source, model.joints().len())?,
+            taken: Vec::new(),
             slips: Vec::new(),
             first: within.start + kept.first().copied().unwrap_or(0),
             rows: kept.len(),
             within,
         };
+        course.taken = course.taken()?;
         course.slips = course.slips()?;
         Ok(course)
     }
@@ -85,6 +89,11 @@ impl<'a> Course<'a> {
     /// Name of the log.
     pub fn name(&self) -> &str {
         self.source.name()
+    }
+
+    /// Sampling rate, Hz.
+    pub fn rate_hz(&self) -> f64 {
+        self.source.rate_hz()
     }
 
     /// Joints that never move, counted from 0.
@@ -124,6 +133,23 @@ impl<'a> Course<'a> {
         Ok(motion.only(keep))
     }
 
+    /// Mean square of what the prefilter takes away, in some windows from end to end.
+    fn taken(&self) -> Result<Vec<f64>, ObserveError> {
+        const WINDOWS: usize = 8;
+        let last = self.source.len().saturating_sub(WINDOW);
+        let mut mean = vec![0.0; self.model.joints().len()];
+        for k in 0..WINDOWS {
+            let start = k * last / (WINDOWS - 1);
+            let recording = window(self.source, start..start + WINDOW)?;
+            let motion = Motion::filtered(&recording, self.filtering)?;
+            let taken = taken_away(&recording.q, &motion.q);
+            mean.iter_mut()
+                .zip(taken)
+                .for_each(|(mean, taken)| *mean += taken / WINDOWS as f64);
+        }
+        Ok(mean)
+    }
+
     /// The presliding states at the first sample and at every [`WINDOW`]-th after it.
     fn slips(&self) -> Result<Vec<Vec<f64>>, ObserveError> {
         if self.model.presliding().is_empty() {
@@ -142,12 +168,13 @@ impl<'a> Course<'a> {
 
     /// The motion at some samples, but for presliding states.
     fn filtered(&self, range: Range<usize>) -> Result<Motion, ObserveError> {
-        // Two differences look two samples further than the prefilter.
-        let reach = self.prefilter.memory() + self.prefilter.extension() + 2;
+        // Two differences look further than the prefilter.
+        let reach = self.prefilter.memory() + self.prefilter.extension() + 2 * REACH;
         let start = range.start.saturating_sub(reach);
         let end = range.end.saturating_add(reach).min(self.source.len());
         let recording = window(self.source, start..end)?;
         let mut motion = Motion::filtered(&recording, self.filtering)?;
+        motion.rest_below(&self.taken, self.filtering);
         motion.hold(&self.resting);
         Ok(motion.only(range.start - start..range.end.min(end) - start))
     }

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::settings::{Edges, Velocity};
+use crate::settings::{Derivatives, Edges, Velocity};
 use crate::signal::{Decimator, SignalError, ZeroPhase, butterworth};
 
 /// The filters of an identification (Gautier 1996, section 6), every choice made.
@@ -21,6 +21,8 @@ pub struct Filtering {
     pub border: (usize, usize),
     /// Edge rule of the filters and of the decimation.
     pub edges: Edges,
+    /// How q, momentum and energy are differentiated.
+    pub derivatives: Derivatives,
     /// Source of the velocity.
     pub velocity: Velocity,
     /// Whether the torque passes the prefilter too.
@@ -38,7 +40,8 @@ impl Filtering {
 
     /// The parallel filter and decimation for signals sampled at `rate_hz`.
     pub(super) fn decimator(&self, rate_hz: f64) -> Result<Decimator, SignalError> {
-        Decimator::new(self.nd, rate_hz, self.edges)
+        let decimator = Decimator::new(self.nd, rate_hz, self.edges)?;
+        Ok(decimator.differentiating(self.derivatives))
     }
 
     /// Samples cut off at the start and at the end before the parallel filter.
@@ -65,6 +68,14 @@ impl Filtering {
     /// the period of its cut-off.
     pub(super) fn bridgeable(&self, rate_hz: f64) -> usize {
         (0.1 * rate_hz / self.fq_hz) as usize + 3
+    }
+
+    /// Velocity that the noise of a position sensor makes behind the prefilter, per unit of the
+    /// standard deviation of what the prefilter takes away: white noise between its cut-off and half
+    /// the rate has the same density below, \\( 2 \pi \sqrt{f_{fq}^3 / 3 / (f_c / 2 - f_{fq})} \\).
+    pub(super) fn noise_speed(&self, rate_hz: f64) -> f64 {
+        let above = (0.5 * rate_hz - self.fq_hz).max(f64::MIN_POSITIVE);
+        std::f64::consts::TAU * (self.fq_hz.powi(3) / 3.0 / above).sqrt()
     }
 
     /// Decimated rows cut off at either end after the parallel filter.

@@ -32,7 +32,7 @@ use serde::Serialize;
 use crate::model::Output;
 
 /// The three identification models of Gautier 1996.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum ModelKind {
     /// \\( \tau = D(q, \dot q, \ddot q) X \\), eq. (17).

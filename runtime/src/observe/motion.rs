@@ -5,8 +5,8 @@ use std::ops::Range;
 use super::{Filtering, ObserveError, slip};
 use crate::log::{Recording, within};
 use crate::model::IdentificationModel;
-use crate::settings::Velocity;
-use crate::signal::central_difference;
+use crate::settings::{Derivatives, Velocity};
+use crate::signal::{derivative, uncertainty};
 
 /// A joint whose position stays within this range, rad or m, is at rest: its velocity would be
 /// nothing but sensor noise, and the sign of it a coin toss.
@@ -65,6 +65,8 @@ impl Motion {
     ) -> Result<Self, ObserveError> {
         check(recording, model.joints().len())?;
         let mut motion = Motion::filtered(recording, filtering)?;
+        let taken = taken_away(&recording.q, &motion.q);
+        motion.rest_below(&taken, filtering);
         motion.hold(&resting(&recording.q));
         motion.slip = slip::along(model, &motion.qd, recording.rate_hz, &[]);
         Ok(motion)
@@ -82,7 +84,7 @@ impl Motion {
         let smooth = |series: &[Vec<f64>]| prefilter.filter(series).map_err(&fail);
         let q = smooth(&recording.q)?;
         let qd = match (filtering.velocity, &recording.qd) {
-            (Velocity::Derived, _) => derivatives(&q, rate_hz),
+            (Velocity::Derived, _) => derivatives(&q, rate_hz, filtering.derivatives),
             (Velocity::Measured, Some(qd)) => smooth(qd)?,
             (Velocity::Measured, None) => {
                 return Err(ObserveError::NoVelocity {
@@ -95,7 +97,7 @@ impl Motion {
             tau => tau.clone(),
         };
         let (log, len) = (recording.name.clone(), recording.len);
-        let qdd = derivatives(&qd, rate_hz);
+        let qdd = derivatives(&qd, rate_hz, filtering.derivatives);
         Ok(Motion {
             log,
             rate_hz,
@@ -139,6 +141,26 @@ impl Motion {
         self
     }
 
+    /// Sets velocities to zero that are no larger than what is uncertain of them, so that the sign
+    /// of a joint at rest is zero and not a coin toss: the error of the difference, and the noise
+    /// of the sensor, given by the mean square `taken` that the prefilter takes away from each joint.
+    /// Nothing is changed where the settings ask for plain differences or measured velocities.
+    pub(super) fn rest_below(&mut self, taken: &[f64], filtering: &Filtering) {
+        let derived = filtering.velocity == Velocity::Derived;
+        if !derived || filtering.derivatives == Derivatives::Central {
+            return;
+        }
+        let noise = filtering.noise_speed(self.rate_hz);
+        for ((qd, q), taken) in self.qd.iter_mut().zip(&self.q).zip(taken) {
+            let floor = noise * taken.sqrt();
+            for (qd, doubt) in qd.iter_mut().zip(uncertainty(q, self.rate_hz)) {
+                if qd.abs() <= doubt.max(floor) {
+                    *qd = 0.0;
+                }
+            }
+        }
+    }
+
     /// Holds joints, counted from 0, at positions, rad or m.
     pub(super) fn hold(&mut self, resting: &[(usize, f64)]) {
         for &(joint, position) in resting {
@@ -159,11 +181,20 @@ fn resting(q: &[Vec<f64>]) -> Vec<(usize, f64)> {
         .collect()
 }
 
-fn derivatives(series: &[Vec<f64>], rate_hz: f64) -> Vec<Vec<f64>> {
+fn derivatives(series: &[Vec<f64>], rate_hz: f64, by: Derivatives) -> Vec<Vec<f64>> {
     series
         .iter()
-        .map(|signal| central_difference(signal, rate_hz))
+        .map(|signal| derivative(signal, rate_hz, by))
         .collect()
+}
+
+/// Mean square of what the prefilter takes away from each position, rad^2 or m^2.
+pub(super) fn taken_away(raw: &[Vec<f64>], filtered: &[Vec<f64>]) -> Vec<f64> {
+    let mean_square = |(raw, filtered): (&Vec<f64>, &Vec<f64>)| {
+        let squares = raw.iter().zip(filtered).map(|(a, b)| (a - b).powi(2));
+        squares.sum::<f64>() / raw.len().max(1) as f64
+    };
+    raw.iter().zip(filtered).map(mean_square).collect()
 }
 
 /// Whether a joint with these positions, rad or m, never moves.

@@ -7,7 +7,8 @@ use super::course::{Course, WINDOW};
 use super::equations::{empty_blocks, equations_at, motor_power};
 use super::{ModelKind, Motion, ObserveError, Treatment};
 use crate::model::{IdentificationModel, Output, States};
-use crate::signal::Running;
+use crate::settings::Derivatives;
+use crate::signal::{REACH, Running, derivative};
 
 /// Samples that the regressor is evaluated on at once: its signals then stay in cache.
 const CHUNK: usize = 512;
@@ -101,7 +102,8 @@ fn inside_rows(
     let mut at = rows.start - edge;
     while at < last {
         let window = at..(at + per_window).min(last);
-        let motion = course.motion(course.sample(at)..course.sample(window.end) + 2)?;
+        let motion =
+            course.motion(course.sample(at) - REACH..course.sample(window.end) + 1 + REACH)?;
         while at < window.end {
             let next = (at + per_chunk).min(window.end);
             stream.follow(&motion, at - window.start, next - at);
@@ -133,12 +135,15 @@ fn overlaps<'a>(
 struct Stream<'a> {
     model: &'a dyn IdentificationModel,
     ratio: usize,
+    rate_hz: f64,
+    derivatives: Derivatives,
     /// The row that comes out next.
     row: usize,
     channels: Vec<Channel>,
     blocks: Vec<Block>,
     states: [Vec<f64>; 4],
     samples: Vec<f64>,
+    rates: Vec<f64>,
 }
 
 /// What a channel's signals are made of.
@@ -185,17 +190,16 @@ impl<'a> Stream<'a> {
                 }
             }
         }
-        let channel = |content: &Content| {
-            let rate = matches!(content, Content::Regressor(_, Treatment::Rate));
-            Channel {
-                content: *content,
-                running: course.decimator.running(signals(model, *content), rate),
-                out: Vec::new(),
-            }
+        let channel = |content: &Content| Channel {
+            content: *content,
+            running: course.decimator.running(signals(model, *content)),
+            out: Vec::new(),
         };
         Stream {
             model,
             ratio: course.decimator.ratio(),
+            rate_hz: course.rate_hz(),
+            derivatives: course.decimator.derivatives(),
             row,
             channels: contents.iter().map(channel).collect(),
             blocks: kinds
@@ -204,12 +208,15 @@ impl<'a> Stream<'a> {
                 .collect(),
             states: Default::default(),
             samples: Vec::new(),
+            rates: Vec::new(),
         }
     }
 
-    /// Takes the next `rows` rows of a motion, which begins `start` rows before the last row.
+    /// Takes the next `rows` rows of a motion, which begins [`REACH`] samples and `start` rows before
+    /// the last row.
     fn follow(&mut self, motion: &Motion, start: usize, rows: usize) {
-        let samples = start * self.ratio..(start + rows) * self.ratio + 2;
+        // From the sample after the last row, and what derivatives look at on either side.
+        let samples = start * self.ratio + 1..(start + rows) * self.ratio + 1 + 2 * REACH;
         for (to, from) in
             self.states
                 .iter_mut()
@@ -237,7 +244,18 @@ impl<'a> Stream<'a> {
                 samples.start,
                 &mut self.samples,
             );
-            channel.running.take(&self.samples, rows);
+            let inner = rows * self.ratio;
+            self.rates.clear();
+            for signal in self.samples.chunks(samples.len()) {
+                match channel.content {
+                    Content::Regressor(_, Treatment::Rate) => {
+                        let rates = derivative(signal, self.rate_hz, self.derivatives);
+                        self.rates.extend(&rates[REACH..REACH + inner]);
+                    }
+                    _ => self.rates.extend(&signal[REACH..REACH + inner]),
+                }
+            }
+            channel.running.take(&self.rates, rows);
         }
     }
 

@@ -26,6 +26,8 @@ pub struct Identification {
     pub warnings: Vec<String>,
     /// The models, in the order of the paper.
     pub models: Vec<ModelResult>,
+    /// Parameters on which two models disagree beyond their standard deviations, the worst first.
+    pub disagreements: Vec<Disagreement>,
     /// The command line that gives this result, if one did.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub command: Option<String>,
@@ -36,6 +38,19 @@ pub struct Identification {
     /// [`crate::identify::series`]: it is larger than all the rest.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub series: Vec<LogSeries>,
+}
+
+/// A parameter on which two models disagree.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Disagreement {
+    /// Name of the parameter.
+    pub parameter: String,
+    /// The two models.
+    pub models: [ModelKind; 2],
+    /// Its value by each, SI.
+    pub values: [f64; 2],
+    /// The difference, in standard deviations of both together.
+    pub sigmas: f64,
 }
 
 /// Parameters that made a simulated log.

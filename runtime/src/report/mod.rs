@@ -17,7 +17,7 @@ mod thin;
 pub use gains::{DriveGains, GainFactor, terminal as gains_terminal};
 pub use html::html;
 pub use identification::{
-    Fit, Identification, InstrumentedFit, InstrumentedValue, JointFit, ModelResult,
+    Disagreement, Fit, Identification, InstrumentedFit, InstrumentedValue, JointFit, ModelResult,
     ParameterResult, PriorValue, Truth, Validation, WithPrior,
 };
 pub use payload::{LoadParameter, Payload, Physical, terminal as payload_terminal};

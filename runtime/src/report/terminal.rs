@@ -5,7 +5,7 @@ use std::fmt::Write;
 use super::table::{Align, Table, optional, shorten, significant};
 use super::{Fit, Identification, ModelResult, ParameterResult};
 use super::{instrumented, prior};
-use crate::settings::{Edges, Velocity, Weights};
+use crate::settings::{Derivatives, Edges, Velocity, Weights};
 
 /// No line but a warning is longer.
 const WIDTH: usize = 118;
@@ -87,6 +87,9 @@ fn trim(id: &Identification) -> String {
 
 fn words(id: &Identification) -> String {
     let velocity = match id.filter.velocity {
+        Velocity::Derived if id.filter.derivatives == Derivatives::Eighth => {
+            "qd from q (eighth order, 0 where uncertain)"
+        }
         Velocity::Derived => "qd from q",
         Velocity::Measured => "qd measured",
     };

@@ -7,7 +7,7 @@ use super::modal::Modes;
 use super::planar::{LANES, Signals};
 use super::running::Running;
 use super::zero_phase::ZeroPhase;
-use crate::settings::Edges;
+use crate::settings::{Derivatives, Edges};
 
 /// Order of the low-pass, as in Matlab's and SciPy's `decimate`.
 const ORDER: usize = 8;
@@ -31,6 +31,7 @@ pub struct Decimator {
     ratio: usize,
     edges: Edges,
     rate_hz: f64,
+    derivatives: Derivatives,
 }
 
 impl Decimator {
@@ -55,7 +56,21 @@ impl Decimator {
             ratio,
             edges,
             rate_hz,
+            derivatives: Derivatives::Central,
         })
+    }
+
+    /// The same with another way to differentiate.
+    pub fn differentiating(self, derivatives: Derivatives) -> Self {
+        Decimator {
+            derivatives,
+            ..self
+        }
+    }
+
+    /// How signals are differentiated.
+    pub fn derivatives(&self) -> Derivatives {
+        self.derivatives
     }
 
     /// Cut-off of the low-pass, Hz.
@@ -88,11 +103,9 @@ impl Decimator {
         self.memory().div_ceil(self.ratio) + 1
     }
 
-    /// The same filter and decimation for `signals` signals whose samples come chunk by chunk, or
-    /// for their derivatives.
-    pub fn running(&self, signals: usize, derivatives: bool) -> Running {
-        let rate_hz = derivatives.then_some(self.rate_hz);
-        Running::new(self.modes.as_ref(), self.ratio, signals, rate_hz)
+    /// The same filter and decimation for `signals` signals whose samples come chunk by chunk.
+    pub fn running(&self, signals: usize) -> Running {
+        Running::new(self.modes.as_ref(), self.ratio, signals)
     }
 
     /// The low-passed signals at the samples `kept`.
@@ -123,7 +136,8 @@ impl Decimator {
         signals: &S,
         kept: &[usize],
     ) -> Result<Vec<Vec<f64>>, SignalError> {
-        let difference = |group: &mut [[f64; LANES]]| differentiate(group, self.rate_hz);
+        let difference =
+            |group: &mut [[f64; LANES]]| differentiate(group, self.rate_hz, self.derivatives);
         match self.edges {
             Edges::Matlab => self.read(signals, kept, from_zero, difference),
             Edges::Scipy => self.read(signals, kept, difference, |_| ()),

@@ -1,6 +1,16 @@
 //! Derivatives without phase shift: central differences.
 
 use super::planar::LANES;
+use crate::settings::Derivatives;
+
+/// Weights of the differences of neighbours 1, 2, 3, 4 samples away, eighth order.
+const EIGHTH: [f64; 4] = [4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0];
+
+/// The same of fourth order.
+const FOURTH: [f64; 2] = [2.0 / 3.0, -1.0 / 12.0];
+
+/// Samples on either side that a derivative looks at, at most.
+pub(crate) const REACH: usize = EIGHTH.len();
 
 /// Derivative of a signal sampled at `rate_hz`, per second: central differences, one-sided first
 /// differences at the two ends; zero for a single sample.
@@ -14,8 +24,59 @@ pub fn central_difference(signal: &[f64], rate_hz: f64) -> Vec<f64> {
         .collect()
 }
 
-/// [`central_difference`] of signals side by side, in place.
-pub(super) fn differentiate(samples: &mut [[f64; LANES]], rate_hz: f64) {
+/// Derivative of a signal sampled at `rate_hz`, per second. Near the two ends, where neighbours
+/// are missing, and for [`Derivatives::Central`], that of [`central_difference`].
+pub fn derivative(signal: &[f64], rate_hz: f64, by: Derivatives) -> Vec<f64> {
+    let mut all = central_difference(signal, rate_hz);
+    if by == Derivatives::Eighth {
+        improve(signal, &EIGHTH, rate_hz, &mut all);
+    }
+    all
+}
+
+/// How uncertain the derivative of eighth order is: its difference from that of fourth order, the
+/// largest of three neighbours.
+pub(crate) fn uncertainty(signal: &[f64], rate_hz: f64) -> Vec<f64> {
+    let mut fourth = central_difference(signal, rate_hz);
+    improve(signal, &FOURTH, rate_hz, &mut fourth);
+    let eighth = derivative(signal, rate_hz, Derivatives::Eighth);
+    let apart: Vec<f64> = eighth
+        .iter()
+        .zip(&fourth)
+        .map(|(a, b)| (a - b).abs())
+        .collect();
+    let last = apart.len().saturating_sub(1);
+    let near = |i: usize| apart[i.saturating_sub(1)..=(i + 1).min(last)].iter();
+    (0..apart.len())
+        .map(|i| near(i).copied().fold(0.0, f64::max))
+        .collect()
+}
+
+/// Replaces derivatives away from the ends by weighted differences of neighbours.
+fn improve(signal: &[f64], weights: &[f64], rate_hz: f64, all: &mut [f64]) {
+    let reach = weights.len();
+    for i in reach..signal.len().saturating_sub(reach) {
+        let terms = weights.iter().enumerate();
+        let sum: f64 = terms
+            .map(|(k, w)| w * (signal[i + k + 1] - signal[i - k - 1]))
+            .sum();
+        all[i] = sum * rate_hz;
+    }
+}
+
+/// [`derivative`] of signals side by side, in place.
+pub(super) fn differentiate(samples: &mut [[f64; LANES]], rate_hz: f64, by: Derivatives) {
+    if by == Derivatives::Eighth {
+        for lane in 0..LANES {
+            let signal: Vec<f64> = samples.iter().map(|sample| sample[lane]).collect();
+            let all = derivative(&signal, rate_hz, by);
+            samples
+                .iter_mut()
+                .zip(all)
+                .for_each(|(sample, x)| sample[lane] = x);
+        }
+        return;
+    }
     let last = samples.len().saturating_sub(1);
     let mut previous = samples.first().copied().unwrap_or([0.0; LANES]);
     for i in 0..samples.len() {
@@ -65,12 +126,40 @@ mod tests {
             let mut samples: Vec<[f64; LANES]> = (0..len)
                 .map(|i| std::array::from_fn(|lane| wave(lane, i)))
                 .collect();
-            differentiate(&mut samples, 50.0);
+            differentiate(&mut samples, 50.0, Derivatives::Central);
             for lane in 0..LANES {
                 let alone: Vec<f64> = (0..len).map(|i| wave(lane, i)).collect();
                 let derivative: Vec<f64> = samples.iter().map(|s| s[lane]).collect();
                 assert_eq!(derivative, central_difference(&alone, 50.0));
             }
+        }
+    }
+
+    #[test]
+    fn eighth_order_is_exact_for_polynomials_up_to_degree_eight() {
+        let x = |i: usize| 0.1 * i as f64 - 0.7;
+        let signal: Vec<f64> = (0..16).map(|i| x(i).powi(8) - x(i)).collect();
+        let all = derivative(&signal, 10.0, Derivatives::Eighth);
+        for (i, value) in all.iter().enumerate().take(12).skip(4) {
+            let truth = 8.0 * x(i).powi(7) - 1.0;
+            assert!((value - truth).abs() < 1e-12, "{value} against {truth}");
+        }
+        assert_eq!(all[3], central_difference(&signal, 10.0)[3]);
+    }
+
+    #[test]
+    fn eighth_order_is_right_to_a_thousandth_up_to_0_45_of_the_half_rate() {
+        let omega = 0.45 * std::f64::consts::PI;
+        let signal: Vec<f64> = (0..40).map(|i| (omega * f64::from(i)).sin()).collect();
+        let all = derivative(&signal, 1.0, Derivatives::Eighth);
+        for i in 4..36 {
+            let truth = omega * (omega * i as f64).cos();
+            assert!(
+                (all[i] - truth).abs() < 1.5e-3 * omega,
+                "{} against {truth}",
+                all[i]
+            );
+            assert!(uncertainty(&signal, 1.0)[i] >= (all[i] - truth).abs());
         }
     }
 }

@@ -52,13 +52,6 @@ impl Modes {
         let powers = self.poles.map(|p| p.powu(m.min(u32::MAX as usize) as u32));
         [powers.map(|p| p.re), powers.map(|p| p.im)]
     }
-
-    /// The weights of a low-pass followed by the central difference at `rate_hz`, per second:
-    /// \\( r_k (p_k - 1/p_k) / 2T \\), of opposite sign for the past and the future.
-    pub fn of_difference(&self, rate_hz: f64) -> [c64; PAIRS] {
-        let factor = |p: c64| (p - 1.0 / p) * (0.5 * rate_hz);
-        std::array::from_fn(|k| self.weights[k] * factor(self.poles[k]))
-    }
 }
 
 /// The pole of a section in the upper half plane.

@@ -3,7 +3,7 @@
 use super::markup::{Element, classed, el};
 use super::words::{count, list, number};
 use crate::report::Identification;
-use crate::settings::{Edges, Velocity, Weights};
+use crate::settings::{Derivatives, Edges, Velocity, Weights};
 
 /// A table of the settings, each with a word on what it does.
 pub(super) fn table(id: &Identification) -> Element {
@@ -60,6 +60,9 @@ fn prefilter(id: &Identification) -> String {
 
 fn velocity(id: &Identification) -> &'static str {
     match id.filter.velocity {
+        Velocity::Derived if id.filter.derivatives == Derivatives::Eighth => {
+            "differences of eighth order of the filtered q; zero where it is uncertain"
+        }
         Velocity::Derived => "central differences of the filtered q",
         Velocity::Measured => "the log's own, filtered like q",
     }
