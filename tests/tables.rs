@@ -12,6 +12,7 @@ use idim::runtime::identify::{Options, identify};
 use idim::runtime::log::{self, ReadOptions};
 use idim::runtime::model::IdentificationModel;
 use idim::runtime::observe::ModelKind;
+use idim::runtime::report::ModelResult;
 use idim::study::{Unset, errors, errors_of};
 
 /// Largest errors of the paper's table 1, percent: explicit, implicit, power.
@@ -77,44 +78,53 @@ fn measured(seed: u64) -> idim::runtime::log::Recording {
     log
 }
 
-#[test]
-fn models_agree_on_a_measured_log_as_in_table_2() {
-    let identified =
-        |options: &Options| identify(&Unset::default(), &[measured(7)], &[], options, &()).unwrap();
-    let dynamic = identified(&Options {
-        nd: Some(10),
-        ..Options::default()
-    });
-    // One equation an instant instead of two: decimated half as much, as many rows.
-    let as_many_rows = Options {
-        models: vec![ModelKind::Power],
-        nd: Some(5),
-        ..Options::default()
+/// Explicit and implicit at a ratio of 10, power at 5: one equation an instant instead of two, as
+/// many rows.
+fn side_by_side(seed: u64) -> [ModelResult; 3] {
+    let identified = |nd, models: &[ModelKind]| {
+        let options = Options {
+            nd: Some(nd),
+            models: models.to_vec(),
+            ..Options::default()
+        };
+        let found = identify(&Unset::default(), &[measured(seed)], &[], &options, &()).unwrap();
+        assert!(found.disagreements.is_empty(), "{:?}", found.disagreements);
+        found.models
     };
-    let energy = identified(&as_many_rows);
-    let of = |kind| dynamic.model(kind).unwrap();
-    let (explicit, implicit) = (of(ModelKind::Explicit), of(ModelKind::Implicit));
-    let power = energy.model(ModelKind::Power).unwrap();
-    assert_eq!(explicit.rows, implicit.rows);
-    assert!(power.rows.abs_diff(explicit.rows) <= 2, "{}", power.rows);
-    println!(
-        "Cond(W) = {:.0}, {:.0}",
-        explicit.condition, power.condition
-    );
-    for (k, a) in explicit.parameters.iter().enumerate() {
-        let (b, c) = (&implicit.parameters[k], &power.parameters[k]);
-        let [x, y, z] = [a, b, c].map(|p| p.value.unwrap());
-        let [s, _, t] = [a, b, c].map(|p| 2.0 * p.sigma.unwrap());
-        println!("{:5} {x:9.4} {y:9.4}  {s:.4}   {z:9.4}  {t:.4}", a.name);
-        // "Exactly the same", as printed beside 2 sigma.
-        assert!((x - y).abs() < 0.1 * s, "{}", a.name);
-        assert!((x - z).abs() < s + t, "{}", a.name);
+    let mut models = identified(10, &[ModelKind::Explicit, ModelKind::Implicit]);
+    models.extend(identified(5, &[ModelKind::Power]));
+    models.try_into().unwrap()
+}
+
+#[test]
+fn models_agree_on_measured_logs_as_in_table_2() {
+    let (mut within, mut all) = (0, 0);
+    for seed in 1..=12 {
+        let [explicit, implicit, power] = side_by_side(seed);
+        assert_eq!(explicit.rows, implicit.rows);
+        assert!(power.rows.abs_diff(explicit.rows) <= 2, "{}", power.rows);
+        if seed == 1 {
+            println!(
+                "Cond(W) = {:.0}, {:.0}",
+                explicit.condition, power.condition
+            );
+        }
+        for (k, a) in explicit.parameters.iter().enumerate() {
+            let (b, c) = (&implicit.parameters[k], &power.parameters[k]);
+            let [x, y, z] = [a, b, c].map(|p| p.value.unwrap());
+            let [s, t] = [a, c].map(|p| 2.0 * p.sigma_corrected.or(p.sigma).unwrap());
+            if seed == 1 {
+                println!("{:5} {x:9.4} {y:9.4}  {s:.4}   {z:9.4}  {t:.4}", a.name);
+            }
+            // "Exactly the same": printed to the first digit of 2 sigma, but for rounding.
+            let printed = 10f64.powf(s.log10().floor());
+            assert!((x - y).abs() < printed, "{} {x} {y} {s}", a.name);
+            within += usize::from((x - z).abs() < s.hypot(t));
+            all += 1;
+        }
     }
-    assert!(
-        dynamic.disagreements.is_empty(),
-        "{:?}",
-        dynamic.disagreements
-    );
+    println!("power within 2 sigma: {within} of {all}");
+    assert!(within as f64 > 0.9 * f64::from(all));
 }
 
 #[test]
