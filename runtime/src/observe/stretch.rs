@@ -33,8 +33,9 @@ pub(crate) fn stretch(
     believed: &[Range<usize>],
     sink: &mut Sink<'_>,
 ) -> Result<(), ObserveError> {
-    // Inside, the row after the last row ahead is needed, and the sample after that.
-    let inner = course.edge()..course.rows().saturating_sub(course.edge() + 2);
+    // Inside, the row after the last row ahead is needed, and what derivatives look at.
+    let margin = course.edge() + 2 + REACH.div_ceil(course.decimator.ratio());
+    let inner = margin..course.rows().saturating_sub(margin);
     let part = |rows: Range<usize>, inside: bool, sink: &mut Sink<'_>| match rows.is_empty() {
         true => Ok(()),
         false if inside => inside_rows(course, model, kinds, rows, believed, sink),

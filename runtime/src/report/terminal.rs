@@ -88,7 +88,7 @@ fn trim(id: &Identification) -> String {
 fn words(id: &Identification) -> String {
     let velocity = match id.filter.velocity {
         Velocity::Derived if id.filter.derivatives == Derivatives::Eighth => {
-            "qd from q (eighth order, 0 where uncertain)"
+            "qd from q (8th order)"
         }
         Velocity::Derived => "qd from q",
         Velocity::Measured => "qd measured",
