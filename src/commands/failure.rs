@@ -31,6 +31,9 @@ pub enum Failure {
     /// An identification that is not possible.
     #[error(transparent)]
     Identify(#[from] idim::runtime::identify::IdentifyError),
+    /// A diagnosis that is not possible.
+    #[error(transparent)]
+    Diagnose(#[from] idim::runtime::diagnose::DiagnoseError),
     /// A simulation that is not possible.
     #[error(transparent)]
     Simulate(#[from] idim::runtime::simulate::SimulateError),

@@ -4,6 +4,7 @@
 
 mod demo;
 mod describe;
+mod diagnose;
 mod failure;
 mod fits;
 mod gains;
@@ -35,6 +36,8 @@ enum Command {
     Demo(demo::Arguments),
     /// Mechanism, base parameters with their relations, operation counts of a robot.
     Describe(describe::Arguments),
+    /// The effect that a robot's model lacks, found in its logs, and the gap that it closes.
+    Diagnose(Box<diagnose::Arguments>),
     /// The specialised code of a robot.
     Generate(generate::Arguments),
     /// Parameters of a robot from measured logs, with statistics and validation.
@@ -48,6 +51,7 @@ pub fn run(arguments: Arguments) -> ExitCode {
     let result = match arguments.command {
         Command::Demo(arguments) => demo::run(&arguments),
         Command::Describe(arguments) => describe::run(&arguments),
+        Command::Diagnose(arguments) => diagnose::run(&arguments),
         Command::Generate(arguments) => generate::run(&arguments),
         Command::Identify(arguments) => identify::run(&arguments),
         Command::Simulate(arguments) => simulate::run(&arguments),

@@ -1,5 +1,199 @@
 //! From a gap between model and measurement to a named effect.
+//!
+//! The way: logs -> `track` rows at a rate that shows colour -> `null` model and its noise,
+//! from what does not repeat (`repeats`) or around a generic model (`generic`,
+//! `likelihood`) -> `screen` every hypothesis of a [`Catalogue`] -> `stepwise` search,
+//! confirmed on another motion -> `verdict` -> `proof` on data that neither fitted nor
+//! confirmed. This room knows no effect by name; torque never enters a column.
 
 mod catalogue;
+mod generic;
+mod joined;
+mod likelihood;
+mod linear;
+mod noise;
+mod null;
+mod options;
+mod proof;
+mod repeats;
+mod rest;
+mod screen;
+mod state;
+mod stepwise;
+mod summary;
+mod system;
+mod track;
+mod verdict;
 
 pub use catalogue::{Catalogue, ColumnsAlong, Entry, EntryKind, Hypothesis, Signals, TorqueColumn};
+pub use options::{DiagnoseError, Log, Options};
+
+use crate::identify::{self, Progress};
+use crate::model::IdentificationModel;
+use crate::observe::Filtering;
+use crate::report::Diagnosis;
+use joined::Joined;
+use null::{Null, Prior};
+use state::{Bench, State};
+use stepwise::Stepwise;
+use track::Track;
+
+/// Cut-off of the prefilter, Hz, and rate of the rows, Hz, where the robot does not say.
+const CUT_OFF: f64 = 50.0;
+const ROWS_HZ: f64 = 100.0;
+
+/// The prefilter stays below this share of half the sampling rate.
+const BELOW_NYQUIST: f64 = 0.4;
+
+/// Rows needed for every parameter.
+const ROWS_PER_PARAMETER: usize = 3;
+
+/// Torque predicted along a validation log at every sample, without and with what was found; one
+/// series per joint, N m or N.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Prediction {
+    /// Of the model as it is described, refitted.
+    pub before: Vec<Vec<f64>>,
+    /// With the effects.
+    pub after: Vec<Vec<f64>>,
+}
+
+/// Asks of a robot's logs what its model lacks: which effects of a catalogue, if any.
+///
+/// Parameters are fitted on `train`. Half of the only log of `validate`, or all but the last,
+/// confirm what is found; the rest proves it.
+///
+/// # Errors
+/// [`DiagnoseError`]: no logs, logs that do not fit the robot or each other, too little data.
+pub fn diagnose(
+    model: &dyn IdentificationModel,
+    catalogue: &dyn Catalogue,
+    (train, validate): (&[Log], &[Log]),
+    options: &Options,
+    progress: &dyn Progress,
+) -> Result<(Diagnosis, Vec<Prediction>), DiagnoseError> {
+    let filtering = filtering(model, train, validate, options)?;
+    let tracks = |logs: &[Log]| -> Result<Vec<Track>, DiagnoseError> {
+        let track = |log: &Log| {
+            progress.step(&format!("filtering {}", log.recording.name));
+            Ok(Track::new(
+                model,
+                &log.recording,
+                &log.companion,
+                &filtering,
+            )?)
+        };
+        logs.iter().map(track).collect()
+    };
+    let joined = Joined::new(tracks(train)?);
+    check_length(model, &joined)?;
+    let other = Joined::new(tracks(validate)?);
+    let (confirm, proof) = split(&other);
+    progress.step("fitting the null model and its noise");
+    let prior = Prior::of(model, model.knowledge());
+    let null = null::null(model, &joined, &prior);
+    let Null { noise, system, .. } = &null;
+    let parameters = system.solution();
+    let predicted = joined.predict(model, &parameters);
+    let hypotheses = predicted
+        .first()
+        .map(|predicted| catalogue.hypotheses(&joined.tracks[0].signals(predicted)))
+        .unwrap_or_default();
+    let bench = Bench {
+        model,
+        catalogue,
+        hypotheses: &hypotheses,
+        train: &joined,
+        noise,
+        null: system,
+    };
+    let before = State {
+        system: system.clone(),
+        parameters,
+        effects: Vec::new(),
+        predicted,
+    };
+    progress.step(&format!("screening {} hypotheses", hypotheses.len()));
+    let search = Stepwise::new(bench, confirm.as_ref(), &before);
+    let outcome = search.run(before.clone());
+    progress.step("proving what was found");
+    let predictions = other
+        .tracks
+        .iter()
+        .map(|track| Prediction {
+            before: bench.torque(&before, track),
+            after: bench.torque(&outcome.state, track),
+        })
+        .collect();
+    let logs = (train, validate);
+    let diagnosis = summary::diagnosis(&bench, &null, (&before, &outcome), proof.as_ref(), logs);
+    Ok((diagnosis, predictions))
+}
+
+/// The filters, as the user or the robot says, and otherwise fast.
+fn filtering(
+    model: &dyn IdentificationModel,
+    train: &[Log],
+    validate: &[Log],
+    options: &Options,
+) -> Result<Filtering, DiagnoseError> {
+    let Some(Log {
+        recording: first, ..
+    }) = train.first()
+    else {
+        return Err(DiagnoseError::NoLogs);
+    };
+    let other = train
+        .iter()
+        .chain(validate)
+        .find(|log| (log.recording.rate_hz / first.rate_hz - 1.0).abs() > 1e-3);
+    if let Some(Log { recording, .. }) = other {
+        return Err(DiagnoseError::Rates {
+            log: recording.name.clone(),
+            rate_hz: recording.rate_hz,
+            first: first.name.clone(),
+            first_hz: first.rate_hz,
+        });
+    }
+    let set = model.settings();
+    let fq_hz = options
+        .fq_hz
+        .or(set.fq_hz)
+        .unwrap_or(CUT_OFF.min(0.5 * BELOW_NYQUIST * first.rate_hz));
+    let nd = options
+        .nd
+        .unwrap_or((first.rate_hz / ROWS_HZ).round().max(1.0) as usize);
+    let asked = identify::Options {
+        fq_hz: Some(fq_hz),
+        nd: Some(nd),
+        ..identify::Options::default()
+    };
+    Ok(asked.resolve(model, std::slice::from_ref(first))?.filtering)
+}
+
+fn check_length(model: &dyn IdentificationModel, joined: &Joined) -> Result<(), DiagnoseError> {
+    let parameters = model.columns().len();
+    let needs = (ROWS_PER_PARAMETER * parameters).max(100);
+    let rows = joined.rows();
+    if rows >= needs {
+        return Ok(());
+    }
+    Err(DiagnoseError::TooShort {
+        rows,
+        step_ms: 1e3 * joined.tracks.first().map_or(0.0, Track::step),
+        needs,
+        parameters,
+    })
+}
+
+/// What confirms and what proves.
+fn split(validate: &Joined) -> (Option<Joined>, Option<Joined>) {
+    match validate.tracks.len() {
+        0 => (None, None),
+        1 => (Some(validate.part(0.0..0.5)), Some(validate.part(0.5..1.0))),
+        count => (
+            Some(Joined::new(validate.tracks[..count - 1].to_vec())),
+            Some(Joined::new(validate.tracks[count - 1..].to_vec())),
+        ),
+    }
+}

@@ -48,7 +48,7 @@ pub fn observe(
 }
 
 /// The equations at the samples `kept` of a motion.
-pub(super) fn equations_at(
+pub(crate) fn equations_at(
     model: &dyn IdentificationModel,
     kind: ModelKind,
     motion: &Motion,

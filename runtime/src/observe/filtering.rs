@@ -39,7 +39,7 @@ impl Filtering {
     }
 
     /// The parallel filter and decimation for signals sampled at `rate_hz`.
-    pub(super) fn decimator(&self, rate_hz: f64) -> Result<Decimator, SignalError> {
+    pub(crate) fn decimator(&self, rate_hz: f64) -> Result<Decimator, SignalError> {
         let decimator = Decimator::new(self.nd, rate_hz, self.edges)?;
         Ok(decimator.differentiating(self.derivatives))
     }
@@ -58,7 +58,7 @@ impl Filtering {
 
     /// Samples on either side of a kept one that the filters gather into it, but for traces: four
     /// decimated rows of the parallel filter and a period of the prefilter's cut-off.
-    pub(super) fn reach(&self, rate_hz: f64) -> usize {
+    pub(crate) fn reach(&self, rate_hz: f64) -> usize {
         self.nd
             .saturating_mul(4)
             .saturating_add((rate_hz / self.fq_hz) as usize)

@@ -16,6 +16,7 @@ mod stretch;
 mod torque;
 
 pub(crate) use course::Course;
+pub(crate) use equations::equations_at;
 pub use equations::{Equations, Observations, observe};
 pub use error::ObserveError;
 pub use filtering::Filtering;

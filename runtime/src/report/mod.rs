@@ -3,6 +3,8 @@
 //! [`Identification`] is all that is said about an identification: its JSON is the machine
 //! readable report, and [`terminal()`] and [`html()`] render nothing but this value.
 
+mod diagnosed;
+mod diagnosis;
 mod gains;
 mod html;
 mod identification;
@@ -14,6 +16,11 @@ mod table;
 mod terminal;
 mod thin;
 
+pub use diagnosed::diagnosed;
+pub use diagnosis::{
+    Alternative, Change, Diagnosis, EffectParameter, FoundEffect, Gap, Located, RejectedEffect,
+    Rms, Verdict,
+};
 pub use gains::{DriveGains, GainFactor, terminal as gains_terminal};
 pub use html::html;
 pub use identification::{

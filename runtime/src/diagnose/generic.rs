@@ -1,0 +1,116 @@
+//! A generic model of a joint: everything that it could do by its own motion and torque, without
+//! a name. What it leaves is taken for noise where a log does not repeat itself.
+
+use std::f64::consts::TAU;
+
+use super::track::{Predicted, Track};
+use crate::model::JointKind;
+use crate::signal::central_difference;
+
+/// The variables that the columns are functions of.
+pub(super) const VARIABLES: [&str; 6] = [
+    "position",
+    "velocity",
+    "velocity sign",
+    "acceleration",
+    "load",
+    "time",
+];
+
+/// The variable of each of the columns.
+pub(super) fn variables() -> Vec<&'static str> {
+    let mut names = vec!["velocity sign"];
+    names.extend(["velocity"; 7]);
+    names.extend(["position"; 2]);
+    for n in 1..=HARMONICS {
+        names.extend(["position"; 2]);
+        if n <= 4 {
+            names.extend(["velocity sign"; 2]);
+        }
+    }
+    names.extend(["time"; 6]);
+    names.extend(["position"; 4]);
+    names.extend(["load"; 5]);
+    names.push("acceleration");
+    names
+}
+
+/// Harmonics of a turn.
+const HARMONICS: usize = 14;
+
+/// Columns of a joint along a track, decimated: offset, speed laws, harmonics of q, direction, slow
+/// time, end zones, torque. A prismatic joint has the harmonics of its stroke.
+pub(super) fn columns(
+    track: &Track,
+    predicted: &Predicted,
+    (joint, kind): (usize, JointKind),
+) -> Vec<Vec<f64>> {
+    let signals = track.signals(predicted);
+    let (q, qd, qdd) = (&signals.q[joint], &signals.qd[joint], &signals.qdd[joint]);
+    let (low, high) = range(q);
+    let top = qd.iter().fold(1e-9_f64, |top, v| top.max(v.abs()));
+    let stroke = (high - low).max(1e-9);
+    let turn = match kind {
+        JointKind::Revolute => 1.0,
+        JointKind::Prismatic => TAU / stroke,
+    };
+    let x: Vec<f64> = q.iter().map(|q| 2.0 * (q - low) / stroke - 1.0).collect();
+    let v: Vec<f64> = qd.iter().map(|v| v / top).collect();
+    let band = signals.dead_band[joint] / top;
+    let side: Vec<f64> = v.iter().map(|v| (v / band).clamp(-1.0, 1.0)).collect();
+    let long = signals.t.last().copied().unwrap_or(1.0).max(1e-9);
+    let s: Vec<f64> = signals.t.iter().map(|t| t / long).collect();
+    let tau = &signals.tau_model[joint];
+    let (least, most) = range(tau);
+    let largest = most.max(-least).max(1e-9);
+    let load: Vec<f64> = signals.tau_rigid[joint]
+        .iter()
+        .map(|t| t / largest)
+        .collect();
+    let tau: Vec<f64> = tau.iter().map(|t| t / largest).collect();
+    let rate = central_difference(&tau, signals.rate_hz);
+    let mut all: Vec<Vec<f64>> = Vec::new();
+    let mut of = |f: &dyn Fn(usize) -> f64| all.push((0..q.len()).map(f).collect());
+    of(&|_| 1.0);
+    of(&|t| v[t].abs());
+    of(&|t| v[t] * v[t].abs());
+    of(&|t| v[t].powi(3));
+    for width in [0.03_f64, 0.08, 0.2, 0.45] {
+        of(&|t| side[t] * (-(v[t] / width).powi(2)).exp());
+    }
+    of(&|t| x[t]);
+    of(&|t| x[t] * x[t]);
+    for n in 1..=HARMONICS {
+        let angle = |t: usize| n as f64 * turn * q[t];
+        of(&|t| angle(t).sin());
+        of(&|t| angle(t).cos());
+        if n <= 4 {
+            of(&|t| side[t] * angle(t).sin());
+            of(&|t| side[t] * angle(t).cos());
+        }
+    }
+    for power in 1..=2 {
+        of(&|t| s[t].powi(power));
+        of(&|t| s[t].powi(power) * side[t]);
+        of(&|t| s[t].powi(power) * v[t]);
+    }
+    for edge in [0.35, 0.7] {
+        of(&|t| (x[t] - edge).max(0.0));
+        of(&|t| (-x[t] - edge).max(0.0));
+    }
+    of(&|t| tau[t]);
+    of(&|t| load[t].abs() * side[t]);
+    of(&|t| (tau[t] / 0.05).tanh());
+    of(&|t| (tau[t] - 0.6).max(0.0) + (tau[t] + 0.6).min(0.0));
+    of(&|t| rate[t]);
+    of(&|t| qdd[t]);
+    track.decimate(&all)
+}
+
+fn range(series: &[f64]) -> (f64, f64) {
+    let low = series.iter().copied().fold(f64::INFINITY, f64::min);
+    (
+        low,
+        series.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+    )
+}

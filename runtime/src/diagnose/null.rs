@@ -1,0 +1,153 @@
+//! The null model: the parameters that the robot's description asks for, refitted where the log
+//! decides and held by the description's tolerances where it does not.
+
+use super::generic;
+use super::joined::Joined;
+use super::likelihood;
+use super::linear::dot;
+use super::noise::{Noise, of_rows};
+use super::repeats::{Repeats, find, pure_error};
+use super::screen::smoothed;
+use super::system::{Sparse, System};
+use super::track::Predicted;
+use crate::knowledge::Knowledge;
+use crate::model::{ColumnKind, IdentificationModel};
+
+/// Passes of fit, noise, fit.
+const PASSES: usize = 3;
+
+/// Rows of prior knowledge \\( A X = b + \epsilon \\), errors of variance one, by columns.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Prior {
+    pub columns: Vec<Vec<f64>>,
+    pub right: Vec<f64>,
+}
+
+impl Prior {
+    /// Of a description's tolerances, friction left open: it changes from day to day.
+    pub fn of(model: &dyn IdentificationModel, knowledge: &Knowledge) -> Prior {
+        let columns = model.columns();
+        let np = columns.len();
+        let inertial = |row: &&[f64]| {
+            let mut used = row[..np].iter().zip(columns).filter(|(a, _)| **a != 0.0);
+            used.any(|(_, column)| column.kind != ColumnKind::Friction)
+        };
+        let rows: Vec<&[f64]> = knowledge
+            .prior
+            .chunks_exact(np + 1)
+            .filter(inertial)
+            .collect();
+        Prior {
+            columns: (0..np)
+                .map(|k| rows.iter().map(|row| row[k]).collect())
+                .collect(),
+            right: rows.iter().map(|row| row[np]).collect(),
+        }
+    }
+}
+
+/// The null model of logs.
+#[derive(Clone, Debug)]
+pub(super) struct Null {
+    pub noise: Vec<Noise>,
+    pub system: System,
+    pub repeats: Vec<Repeats>,
+    /// Columns of the generic model of each joint, whitened; empty where the log repeats itself.
+    pub generic: Vec<Vec<Sparse>>,
+}
+
+/// Fits the null model and its noise.
+pub(super) fn null(model: &dyn IdentificationModel, joined: &Joined, prior: &Prior) -> Null {
+    let segments = joined.tracks.iter().zip(joined.segments.clone());
+    let repeats: Vec<Repeats> = segments
+        .filter_map(|(track, rows)| find(track, rows))
+        .collect();
+    let mut noise: Vec<Noise> = (0..joined.joints())
+        .map(|joint| {
+            let y = joined.measured(joint);
+            Noise::white(0.05 * (dot(&y, &y) / y.len().max(1) as f64).sqrt())
+        })
+        .collect();
+    let mut generic: Vec<Vec<Vec<f64>>> = Vec::new();
+    let mut system = fit(model, joined, &noise, prior);
+    for _ in 0..PASSES {
+        let parameters = system.solution();
+        let product = joined.product(&parameters);
+        if repeats.is_empty() {
+            generic = generic_columns(model, joined, &joined.predict(model, &parameters));
+        }
+        for (joint, noise) in noise.iter_mut().enumerate() {
+            let y = joined.measured(joint);
+            let residual: Vec<f64> = y
+                .iter()
+                .zip(&product[joint])
+                .map(|(y, wx)| y - wx)
+                .collect();
+            let weights = &joined.weights[joint];
+            *noise = if repeats.is_empty() {
+                likelihood::noise(&generic[joint], &residual, weights, &joined.segments)
+            } else {
+                let error = pure_error(&residual, weights, &repeats);
+                of_rows(&error.rows, &error.weights, &joined.segments, 1.0)
+            };
+        }
+        system = fit(model, joined, &noise, prior);
+    }
+    let whiten = |(joint, columns): (usize, Vec<Vec<f64>>)| -> Vec<Sparse> {
+        // Along the smooth motion, as all that the loop could imitate.
+        let column = |rows: Vec<f64>| joined.whiten(&[(joint, smoothed(&rows))], &noise);
+        columns.into_iter().map(column).collect()
+    };
+    Null {
+        generic: generic.into_iter().enumerate().map(whiten).collect(),
+        noise,
+        system,
+        repeats,
+    }
+}
+
+/// Weighted least squares of the base parameters, with the rows of the prior.
+fn fit(model: &dyn IdentificationModel, joined: &Joined, noise: &[Noise], prior: &Prior) -> System {
+    let joints = joined.joints();
+    let mut y = Vec::with_capacity(joints * joined.rows() + prior.right.len());
+    for joint in 0..joints {
+        let white = joined.whiten(&[(joint, joined.measured(joint))], noise);
+        white.0.into_iter().for_each(|(_, rows)| y.extend(rows));
+    }
+    y.extend_from_slice(&prior.right);
+    let mut system = System::new(joined.rows(), y);
+    for k in 0..model.columns().len() {
+        let mut column = joined.whiten(&joined.base(k), noise);
+        if let Some(known) = prior.columns.get(k).filter(|rows| !rows.is_empty()) {
+            column.0.push((joints, known.clone()));
+        }
+        system.push(&column);
+    }
+    system
+}
+
+/// Columns of the generic model over all logs, and those of the null model.
+fn generic_columns(
+    model: &dyn IdentificationModel,
+    joined: &Joined,
+    predicted: &[Predicted],
+) -> Vec<Vec<Vec<f64>>> {
+    let of_joint = |(joint, kind): (usize, &crate::model::Joint)| {
+        let base = (0..model.columns().len()).flat_map(|k| joined.base(k));
+        let mut all: Vec<Vec<f64>> = base
+            .filter(|(on, _)| *on == joint)
+            .map(|(_, rows)| rows)
+            .collect();
+        let mut own: Vec<Vec<f64>> = Vec::new();
+        for (track, predicted) in joined.tracks.iter().zip(predicted) {
+            let columns = generic::columns(track, predicted, (joint, kind.kind));
+            own.resize(columns.len(), Vec::new());
+            own.iter_mut()
+                .zip(columns)
+                .for_each(|(all, more)| all.extend(more));
+        }
+        all.extend(own);
+        all
+    };
+    model.joints().iter().enumerate().map(of_joint).collect()
+}

@@ -1,0 +1,189 @@
+//! The model with the effects that it has by now, fitted.
+
+use super::catalogue::{Catalogue, EntryKind, Hypothesis};
+use super::joined::Joined;
+use super::linear::add_scaled;
+use super::noise::Noise;
+use super::system::{Sparse, System};
+use super::track::{Predicted, Track};
+use crate::model::IdentificationModel;
+
+/// Rounds in which columns that depend on the model are rebuilt.
+const ROUNDS: usize = 2;
+
+/// An effect in the model.
+#[derive(Clone, Debug)]
+pub(super) struct Effect {
+    /// Place in the list of hypotheses.
+    pub number: usize,
+    pub shape: Vec<f64>,
+    /// Names and units of its parameters, and their values.
+    pub names: Vec<(String, &'static str)>,
+    pub values: Vec<f64>,
+    pub sigmas: Vec<Option<f64>>,
+    columns: Vec<Sparse>,
+}
+
+/// What every step of the search needs.
+#[derive(Clone, Copy)]
+pub(super) struct Bench<'a> {
+    pub model: &'a dyn IdentificationModel,
+    pub catalogue: &'a dyn Catalogue,
+    pub hypotheses: &'a [Hypothesis],
+    pub train: &'a Joined,
+    pub noise: &'a [Noise],
+    /// The null model alone.
+    pub null: &'a System,
+}
+
+/// The model with some effects.
+#[derive(Clone)]
+pub(super) struct State {
+    pub system: System,
+    pub parameters: Vec<f64>,
+    pub effects: Vec<Effect>,
+    /// What it predicts along the training logs.
+    pub predicted: Vec<Predicted>,
+}
+
+impl Bench<'_> {
+    pub fn kind(&self, number: usize) -> EntryKind {
+        self.catalogue.entries()[self.hypotheses[number].entry].kind
+    }
+
+    /// The null model with effects (number and shape), starting from what `before` predicts.
+    pub fn settle(&self, chosen: &[(usize, Vec<f64>)], before: &[Predicted]) -> State {
+        let mut predicted = before.to_vec();
+        let dependent = chosen
+            .iter()
+            .any(|(number, _)| self.kind(*number) != EntryKind::Static);
+        let mut state = self.fitted(chosen, predicted.clone());
+        for _ in 0..if dependent { ROUNDS } else { 1 } {
+            predicted = self.predicted(self.train, &state.parameters, &state.effects);
+            if dependent {
+                state = self.fitted(chosen, predicted.clone());
+            }
+        }
+        state.predicted = predicted;
+        state
+    }
+
+    fn fitted(&self, chosen: &[(usize, Vec<f64>)], predicted: Vec<Predicted>) -> State {
+        let mut system = self.null.clone();
+        let mut effects: Vec<Effect> = Vec::new();
+        let along = self.train.along(self.catalogue, &predicted);
+        for (number, shape) in chosen {
+            let hypothesis = &self.hypotheses[*number];
+            let shapes = std::slice::from_ref(shape);
+            let made = self.train.columns(&along, hypothesis, shapes);
+            let made: Vec<_> = made.into_iter().flatten().collect();
+            let columns: Vec<Sparse> = made
+                .iter()
+                .map(|column| self.train.whiten(&column.torque, self.noise))
+                .collect();
+            columns.iter().for_each(|column| {
+                system.push(column);
+            });
+            effects.push(Effect {
+                number: *number,
+                shape: shape.clone(),
+                names: made
+                    .into_iter()
+                    .map(|column| (column.name, column.unit))
+                    .collect(),
+                values: Vec::new(),
+                sigmas: Vec::new(),
+                columns,
+            });
+        }
+        drop(along);
+        let np = self.model.columns().len();
+        let mut solution = system.solution();
+        let added = solution.split_off(np);
+        let sigmas = system.sigmas(added.len());
+        let mut first = 0;
+        for effect in &mut effects {
+            let own = first..first + effect.columns.len();
+            first = own.end;
+            effect.values = added[own.clone()].to_vec();
+            effect.sigmas = sigmas[own].to_vec();
+        }
+        State {
+            system,
+            parameters: solution,
+            effects,
+            predicted,
+        }
+    }
+
+    /// What a model with effects predicts along logs at their full rate. Those effects that are
+    /// made of this prediction are left out of it.
+    pub fn predicted(
+        &self,
+        joined: &Joined,
+        parameters: &[f64],
+        effects: &[Effect],
+    ) -> Vec<Predicted> {
+        let of_track = |track: &Track| {
+            let mut predicted = track.predict(self.model, parameters);
+            let plain = predicted.clone();
+            let own = |effect: &&Effect| self.kind(effect.number) != EntryKind::ModelDependent;
+            let effects = effects.iter().filter(own);
+            self.add(track, effects, &plain, &mut predicted.model);
+            predicted
+        };
+        joined.tracks.iter().map(of_track).collect()
+    }
+
+    /// Adds the torque of effects along a track, at its full rate.
+    fn add<'e>(
+        &self,
+        track: &Track,
+        effects: impl Iterator<Item = &'e Effect>,
+        predicted: &Predicted,
+        to: &mut [Vec<f64>],
+    ) {
+        let along = self.catalogue.along(track.signals(predicted));
+        for effect in effects {
+            let columns = along(&self.hypotheses[effect.number], &effect.shape);
+            for (column, value) in columns.iter().zip(&effect.values) {
+                for (joint, torque) in &column.torque {
+                    add_scaled(&mut to[*joint], *value, torque);
+                }
+            }
+        }
+    }
+
+    /// Decimated torque that a state predicts along other logs, by joint.
+    pub fn rows(&self, state: &State, joined: &Joined) -> Vec<Vec<f64>> {
+        let mut rows = joined.product(&state.parameters);
+        if state.effects.is_empty() {
+            return rows;
+        }
+        let predicted = self.predicted(joined, &state.parameters, &state.effects);
+        let along = joined.along(self.catalogue, &predicted);
+        for effect in &state.effects {
+            let hypothesis = &self.hypotheses[effect.number];
+            let shapes = std::slice::from_ref(&effect.shape);
+            let made = joined.columns(&along, hypothesis, shapes);
+            for (column, value) in made.iter().flatten().zip(&effect.values) {
+                for (joint, torque) in &column.torque {
+                    add_scaled(&mut rows[*joint], *value, torque);
+                }
+            }
+        }
+        rows
+    }
+
+    /// Torque that a state predicts along a track at its full rate, by joint.
+    pub fn torque(&self, state: &State, track: &Track) -> Vec<Vec<f64>> {
+        let one = Joined::new(vec![track.clone()]);
+        let predicted = self.predicted(&one, &state.parameters, &state.effects);
+        let mut torque = track.predict(self.model, &state.parameters).model;
+        for predicted in &predicted {
+            self.add(track, state.effects.iter(), predicted, &mut torque);
+        }
+        torque.iter_mut().for_each(|torque| track.as_logged(torque));
+        torque
+    }
+}

@@ -1,0 +1,377 @@
+//! Forward, one effect at a time, then back: remove, exchange.
+
+use rayon::prelude::*;
+
+use super::catalogue::{ColumnsAlong, EntryKind};
+use super::joined::Joined;
+use super::linear::chi_square_survival;
+use super::screen::{Candidate, Contender};
+use super::state::{Bench, State};
+use super::system::Sparse;
+
+/// Effects named at most.
+const MOST: usize = 5;
+
+/// Contenders looked at closely in each step.
+const CLOSELY: usize = 10;
+
+/// Margin below zero at which a contender is still refined.
+const NEARLY: f64 = -15.0;
+
+/// Margin by which another effect must be better to take the place of one.
+const BETTER: f64 = 5.0;
+
+/// A second explanation, less than this worse, is the name if it is the simpler one.
+const AS_GOOD: f64 = 10.0;
+
+/// What is left of an effect's gain beside another that is indistinguishable from it: at most this,
+/// or this share of it.
+const LEFT: f64 = 20.0;
+const LEFT_SHARE: f64 = 0.05;
+
+/// Share of the gain that the columns promise on another motion which must be there.
+const CONFIRMED: f64 = 1.0 / 3.0;
+
+/// By how much an effect may raise the plain torque error on another motion, as a factor: what
+/// only noise decides.
+const WORSE: f64 = 1.005;
+
+/// Without another motion to confirm, this much more margin is asked for.
+const UNCONFIRMED: f64 = 20.0;
+
+/// A hypothesis that was looked at and not taken.
+#[derive(Clone, Debug)]
+pub(super) struct Refused {
+    pub number: usize,
+    pub why: String,
+}
+
+/// Another explanation of what an effect explains.
+#[derive(Clone, Debug)]
+pub(super) struct Rival {
+    pub number: usize,
+    pub p_value: f64,
+    pub separable: bool,
+}
+
+/// An effect that was named, beside the state's own record of it.
+#[derive(Clone, Debug)]
+pub(super) struct Named {
+    pub number: usize,
+    pub shape: Vec<f64>,
+    pub p_value: f64,
+    pub rivals: Vec<Rival>,
+}
+
+/// What the search ends with.
+pub(super) struct Outcome {
+    pub state: State,
+    pub named: Vec<Named>,
+    pub refused: Vec<Refused>,
+}
+
+/// The search and what it has found so far.
+pub(super) struct Stepwise<'a> {
+    pub bench: Bench<'a>,
+    pub confirm: Option<&'a Joined>,
+    /// Candidates of static effects, which never change.
+    fixed: Vec<Candidate>,
+    dependent: Vec<usize>,
+    refused: Vec<Refused>,
+}
+
+impl<'a> Stepwise<'a> {
+    /// Prepares the search: columns of all static hypotheses.
+    pub fn new(bench: Bench<'a>, confirm: Option<&'a Joined>, null: &State) -> Self {
+        let all = 0..bench.hypotheses.len();
+        let (fixed, dependent): (Vec<usize>, Vec<usize>) =
+            all.partition(|number| bench.kind(*number) == EntryKind::Static);
+        Stepwise {
+            fixed: bench.candidates(&fixed, &bench.train.along(bench.catalogue, &null.predicted)),
+            bench,
+            confirm,
+            dependent,
+            refused: Vec::new(),
+        }
+    }
+
+    /// Runs it from the null model.
+    pub fn run(mut self, null: State) -> Outcome {
+        let mut named: Vec<Named> = Vec::new();
+        let mut state = null;
+        for _ in 0..2 {
+            state = self.forward(state, &mut named);
+            let changed = self.back(&mut state, &mut named);
+            if !changed {
+                break;
+            }
+        }
+        let taken: Vec<usize> = named.iter().map(|n| n.number).collect();
+        self.refused
+            .retain(|refused| !taken.contains(&refused.number));
+        let mut seen = Vec::new();
+        self.refused.retain(|refused| {
+            let new = !seen.contains(&refused.number);
+            seen.push(refused.number);
+            new
+        });
+        Outcome {
+            state,
+            named,
+            refused: self.refused,
+        }
+    }
+
+    fn forward(&mut self, mut state: State, named: &mut Vec<Named>) -> State {
+        while named.len() < MOST {
+            let along = self
+                .bench
+                .train
+                .along(self.bench.catalogue, &state.predicted);
+            let ranking = self.ranking(&state, named, &along);
+            let Some((next, found)) = self.choose(ranking, &state, named, &along) else {
+                break;
+            };
+            drop(along);
+            named.push(found);
+            state = next;
+        }
+        state
+    }
+
+    /// All hypotheses that are not named yet, best first.
+    fn ranking(
+        &self,
+        state: &State,
+        named: &[Named],
+        along: &[ColumnsAlong<'_>],
+    ) -> Vec<Contender> {
+        let dependent = self.bench.candidates(&self.dependent, along);
+        let mut candidates: Vec<&Candidate> = self.fixed.iter().chain(&dependent).collect();
+        candidates.retain(|candidate| !named.iter().any(|n| n.number == candidate.number));
+        self.bench.ranking(&candidates, state, NEARLY)
+    }
+
+    /// The first contender that nothing speaks against, with those it cannot be told from.
+    fn choose(
+        &mut self,
+        ranking: Vec<Contender>,
+        state: &State,
+        named: &[Named],
+        along: &[ColumnsAlong<'_>],
+    ) -> Option<(State, Named)> {
+        let near = ranking.into_par_iter().take(CLOSELY);
+        let mut open: Vec<Contender> = near.map(|c| self.bench.refine(c, state, along)).collect();
+        let least = if self.confirm.is_some() {
+            0.0
+        } else {
+            UNCONFIRMED
+        };
+        open.retain(|contender| contender.margin > least);
+        open.sort_by(|a, b| b.margin.total_cmp(&a.margin));
+        let mut plausible = Vec::new();
+        for contender in open {
+            match self.implausible(&contender) {
+                Some(why) => self.refuse(contender.candidate.number, why),
+                None => plausible.push(contender),
+            }
+        }
+        for place in 0..plausible.len() {
+            let next = match self.confirmed(&plausible[place], state, named) {
+                Ok(next) => next,
+                Err(why) => {
+                    self.refuse(plausible[place].candidate.number, why);
+                    continue;
+                }
+            };
+            let best = plausible.swap_remove(place);
+            let (best, next, rivals) = self.simplest(best, next, plausible, state, named);
+            let found = Named {
+                number: best.candidate.number,
+                shape: best.candidate.shape.clone(),
+                p_value: self.p_value(&best),
+                rivals,
+            };
+            return Some((next, found));
+        }
+        None
+    }
+
+    fn refuse(&mut self, number: usize, why: String) {
+        self.refused.push(Refused { number, why });
+    }
+
+    fn implausible(&self, contender: &Contender) -> Option<String> {
+        let Candidate { number, shape, .. } = &contender.candidate;
+        let values: Vec<f64> = contender
+            .gain
+            .values
+            .iter()
+            .map(|v| v.unwrap_or(0.0))
+            .collect();
+        self.bench
+            .catalogue
+            .implausible(&self.bench.hypotheses[*number], shape, &values)
+    }
+
+    /// Corrected for the number of hypotheses tried.
+    fn p_value(&self, contender: &Contender) -> f64 {
+        let tried = self.bench.hypotheses.len() as f64;
+        (tried * chi_square_survival(contender.gain.square, contender.freedom)).min(1.0)
+    }
+
+    /// The state with a contender, if it keeps its promise on another motion.
+    fn confirmed(
+        &self,
+        contender: &Contender,
+        state: &State,
+        named: &[Named],
+    ) -> Result<State, String> {
+        let mut chosen: Vec<(usize, Vec<f64>)> =
+            named.iter().map(|n| (n.number, n.shape.clone())).collect();
+        chosen.push((
+            contender.candidate.number,
+            contender.candidate.shape.clone(),
+        ));
+        let next = self.bench.settle(&chosen, &state.predicted);
+        let Some(confirm) = self.confirm else {
+            return Ok(next);
+        };
+        let before = self.bench.rows(state, confirm);
+        let after = self.bench.rows(&next, confirm);
+        let (along, promised) = self.bench.difference(confirm, (&before, &after));
+        let gained = 2.0 * along - promised;
+        if gained < CONFIRMED * promised {
+            return Err(format!(
+                "it improves the training log (by {:.0}) and does not keep its promise on the \
+                 validation log: {gained:.0} of {promised:.0}",
+                contender.gain.square
+            ));
+        }
+        let joints = contender
+            .candidate
+            .columns
+            .iter()
+            .flat_map(|c| c.0.iter().map(|p| p.0));
+        let joints: Vec<usize> = joints.collect();
+        let error = |rows: &[Vec<f64>]| -> f64 {
+            let of_joint = |&joint: &usize| -> f64 {
+                let weights = confirm.weights[joint].iter();
+                let measured = confirm.measured(joint);
+                let pairs = measured.iter().zip(&rows[joint]);
+                weights
+                    .zip(pairs)
+                    .map(|(w, (y, p))| w * (y - p).powi(2))
+                    .sum()
+            };
+            joints.iter().map(of_joint).sum::<f64>().sqrt()
+        };
+        let (before, after) = (error(&before), error(&after));
+        if after > WORSE * before {
+            return Err(format!(
+                "it raises the torque error of its joints on the validation log by {:.1} %",
+                100.0 * (after / before - 1.0)
+            ));
+        }
+        Ok(next)
+    }
+
+    /// Of the explanations that cannot be told from the best, the simplest; and its rivals.
+    fn simplest(
+        &self,
+        best: Contender,
+        next: State,
+        others: Vec<Contender>,
+        state: &State,
+        named: &[Named],
+    ) -> (Contender, State, Vec<Rival>) {
+        let (same, apart): (Vec<Contender>, Vec<Contender>) = others
+            .into_iter()
+            .partition(|other| self.same(&best, other, state));
+        let simpler = same
+            .iter()
+            .find(|other| other.freedom < best.freedom && other.margin > best.margin - AS_GOOD);
+        let simpler = simpler.and_then(|other| {
+            let next = self.confirmed(other, state, named).ok()?;
+            Some((other.clone(), next))
+        });
+        let swapped = simpler.is_some();
+        let (first, next) = simpler.unwrap_or((best.clone(), next));
+        let rival = |contender: &Contender, separable: bool| Rival {
+            number: contender.candidate.number,
+            p_value: self.p_value(contender),
+            separable,
+        };
+        let mut rivals = Vec::new();
+        if swapped {
+            rivals.push(rival(&best, false));
+        }
+        let others = same
+            .iter()
+            .filter(|c| c.candidate.number != first.candidate.number);
+        rivals.extend(others.map(|contender| rival(contender, false)));
+        rivals.extend(apart.iter().take(2).map(|contender| rival(contender, true)));
+        (first, next, rivals)
+    }
+
+    /// Whether hardly anything is left of one explanation once another is in the model.
+    fn same(&self, one: &Contender, other: &Contender, state: &State) -> bool {
+        let mut with = state.system.clone();
+        other.candidate.columns.iter().for_each(|column: &Sparse| {
+            with.push(column);
+        });
+        let left = self.bench.contend(one.candidate.clone(), &with).gain.square;
+        left < LEFT.max(LEFT_SHARE * one.gain.square)
+    }
+
+    /// Tries to remove each effect, and to exchange it for another; whether anything changed.
+    fn back(&mut self, state: &mut State, named: &mut Vec<Named>) -> bool {
+        if named.len() < 2 {
+            return false;
+        }
+        let mut changed = false;
+        for place in (0..named.len()).rev() {
+            let mut others = named.clone();
+            let own = others.remove(place);
+            let chosen: Vec<(usize, Vec<f64>)> =
+                others.iter().map(|n| (n.number, n.shape.clone())).collect();
+            let without = self.bench.settle(&chosen, &state.predicted);
+            let along = self
+                .bench
+                .train
+                .along(self.bench.catalogue, &without.predicted);
+            let ranking = self.ranking(&without, &others, &along);
+            let margin = ranking
+                .iter()
+                .find(|c| c.candidate.number == own.number)
+                .map(|c| self.bench.refine(c.clone(), &without, &along).margin);
+            if margin.is_none_or(|margin| margin <= 0.0) {
+                drop(along);
+                self.refuse(
+                    own.number,
+                    "beside the other effects nothing is left of it".into(),
+                );
+                (*state, *named, changed) = (without, others, true);
+                continue;
+            }
+            let better = ranking.first().is_some_and(|c| {
+                c.candidate.number != own.number && c.margin > margin.unwrap_or(0.0) + BETTER
+            });
+            if !better {
+                continue;
+            }
+            let chosen = self.choose(ranking, &without, &others, &along);
+            let Some((next, found)) = chosen.filter(|(_, found)| found.number != own.number) else {
+                continue;
+            };
+            self.refuse(own.number, "another effect explains the same better".into());
+            others.insert(place.min(others.len()), found);
+            // The order of the effects is that of the states' columns.
+            let chosen: Vec<(usize, Vec<f64>)> =
+                others.iter().map(|n| (n.number, n.shape.clone())).collect();
+            *state = self.bench.settle(&chosen, &next.predicted);
+            (*named, changed) = (others, true);
+        }
+        changed
+    }
+}

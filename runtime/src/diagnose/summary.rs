@@ -1,0 +1,201 @@
+//! A search's outcome in words and numbers.
+
+use std::collections::BTreeMap;
+
+use super::catalogue::Hypothesis;
+use super::joined::Joined;
+use super::null::Null;
+use super::state::{Bench, Effect, State};
+use super::stepwise::{Named, Outcome};
+use super::{Log, proof, verdict};
+use crate::report::{
+    Alternative, Change, Diagnosis, EffectParameter, FoundEffect, Gap, Located, RejectedEffect,
+    Verdict,
+};
+
+/// Puts an outcome into a [`Diagnosis`].
+pub(super) fn diagnosis(
+    bench: &Bench<'_>,
+    null: &Null,
+    (before, outcome): (&State, &Outcome),
+    proof: Option<&Joined>,
+    (train, validate): (&[Log], &[Log]),
+) -> Diagnosis {
+    let lacks = verdict::lacks(bench, null, before);
+    let left = verdict::lacks(bench, null, &outcome.state);
+    let verdict = match outcome.named.is_empty() {
+        true if verdict::open(&lacks) => Verdict::Unknown,
+        true => Verdict::Nothing,
+        false if verdict::closed(&lacks, &left) => Verdict::Named,
+        false => Verdict::Unknown,
+    };
+    let located = verdict::located(bench, &lacks, before).into_iter();
+    let located = located.map(|(joint, unexplained_pct, varies_with)| Located {
+        joint: bench.model.joints()[joint].name.to_string(),
+        unexplained_pct,
+        varies_with: varies_with.into_iter().map(str::to_owned).collect(),
+    });
+    let on = proof.unwrap_or(bench.train);
+    Diagnosis {
+        robot: bench.model.name().to_owned(),
+        verdict,
+        effects: effects(bench, outcome),
+        rejected: rejected(bench, outcome),
+        located: located.collect(),
+        gap: Gap {
+            torque: Change {
+                before: proof::fit(bench, before, on),
+                after: proof::fit(bench, &outcome.state, on),
+            },
+            simulation: None,
+            on: place(on, proof.is_some(), validate.len()),
+        },
+        warnings: warnings(train, validate),
+    }
+}
+
+/// What the gap was measured on.
+fn place(on: &Joined, proven: bool, validation: usize) -> String {
+    let names: Vec<&str> = on
+        .tracks
+        .iter()
+        .map(|track| track.motion.log.as_str())
+        .collect();
+    let names = names.join(" + ");
+    match (proven, validation) {
+        (false, _) => format!("{names} (the training log itself: nothing is proven)"),
+        (true, 1) => format!("second half of {names}"),
+        (true, _) => names,
+    }
+}
+
+fn effects(bench: &Bench<'_>, outcome: &Outcome) -> Vec<FoundEffect> {
+    let all = proof::fit(bench, &outcome.state, bench.train).total_pct;
+    let mut found: Vec<(f64, FoundEffect)> = Vec::new();
+    for (named, effect) in outcome.named.iter().zip(&outcome.state.effects) {
+        let others = outcome
+            .state
+            .effects
+            .iter()
+            .filter(|other| other.number != named.number);
+        let others: Vec<(usize, Vec<f64>)> = others
+            .map(|other| (other.number, other.shape.clone()))
+            .collect();
+        let without = bench.settle(&others, &outcome.state.predicted);
+        let gain = without.system.square() - outcome.state.system.square();
+        let error = proof::fit(bench, &without, bench.train).total_pct;
+        found.push((
+            gain,
+            effect_in_words(bench, named, effect, 100.0 * (1.0 - all / error)),
+        ));
+    }
+    found.sort_by(|a, b| b.0.total_cmp(&a.0));
+    found.into_iter().map(|(_, effect)| effect).collect()
+}
+
+fn effect_in_words(
+    bench: &Bench<'_>,
+    named: &Named,
+    effect: &Effect,
+    gain_pct: f64,
+) -> FoundEffect {
+    let hypothesis = &bench.hypotheses[named.number];
+    let entry = &bench.catalogue.entries()[hypothesis.entry];
+    let (joint, joints) = joints(bench, hypothesis);
+    let parameters = effect
+        .names
+        .iter()
+        .zip(effect.values.iter().zip(&effect.sigmas));
+    let parameter =
+        |((name, unit), (value, sigma)): (&(String, &str), (&f64, &Option<f64>))| EffectParameter {
+            name: name.clone(),
+            unit: (*unit).to_owned(),
+            value: *value,
+            sigma: *sigma,
+        };
+    let shape = entry.shape.iter().zip(&named.shape);
+    let alternative = |rival: &super::stepwise::Rival| {
+        let hypothesis = &bench.hypotheses[rival.number];
+        let (joint, joints) = self::joints(bench, hypothesis);
+        Alternative {
+            effect: bench.catalogue.entries()[hypothesis.entry].name.to_owned(),
+            joint,
+            joints,
+            p_value: rival.p_value,
+            separable: rival.separable,
+        }
+    };
+    FoundEffect {
+        effect: entry.name.to_owned(),
+        joint,
+        joints,
+        meaning: entry.meaning.to_owned(),
+        formula: entry.formula.to_owned(),
+        parameters: parameters.map(parameter).collect(),
+        shape: shape
+            .map(|((name, _), value)| ((*name).to_owned(), *value))
+            .collect::<BTreeMap<_, _>>(),
+        p_value: named.p_value,
+        gain_pct,
+        alternatives: named.rivals.iter().map(alternative).collect(),
+        experiment: entry.experiment.to_owned(),
+    }
+}
+
+fn rejected(bench: &Bench<'_>, outcome: &Outcome) -> Vec<RejectedEffect> {
+    let refused = outcome.refused.iter();
+    refused
+        .map(|refused| {
+            let hypothesis = &bench.hypotheses[refused.number];
+            let (joint, joints) = joints(bench, hypothesis);
+            RejectedEffect {
+                effect: bench.catalogue.entries()[hypothesis.entry].name.to_owned(),
+                joint,
+                joints,
+                why: refused.why.clone(),
+            }
+        })
+        .collect()
+}
+
+/// Name of the only joint, and all joints counted from 1.
+fn joints(bench: &Bench<'_>, hypothesis: &Hypothesis) -> (Option<String>, Vec<usize>) {
+    let name = match hypothesis.joints[..] {
+        [joint] => bench
+            .model
+            .joints()
+            .get(joint)
+            .map(|joint| joint.name.to_string()),
+        _ => None,
+    };
+    (
+        name,
+        hypothesis.joints.iter().map(|joint| joint + 1).collect(),
+    )
+}
+
+fn warnings(train: &[Log], validate: &[Log]) -> Vec<String> {
+    let logs = train.iter().chain(validate);
+    let mut all: Vec<String> = logs
+        .flat_map(|log| log.recording.warnings.clone())
+        .collect();
+    for log in validate {
+        let same = train.iter().find(|other| {
+            other.recording.q == log.recording.q && other.recording.tau == log.recording.tau
+        });
+        if let Some(same) = same {
+            all.push(format!(
+                "{} is the training log {} itself: it confirms and proves nothing",
+                log.recording.name, same.recording.name
+            ));
+        }
+    }
+    if validate.is_empty() {
+        all.push(
+            "no validation log: what was found is not confirmed on another motion, and nothing is \
+             proven; give one with --validate"
+                .to_owned(),
+        );
+    }
+    all
+}

@@ -1,0 +1,167 @@
+//! Is there anything, is there still anything, and where.
+
+use super::generic;
+use super::noise::{ORDER, effective};
+use super::null::Null;
+use super::repeats::{Lack, lack_of_fit, pure_error};
+use super::screen::smoothed;
+use super::state::{Bench, State};
+use super::system::Sparse;
+
+/// Standard deviations beyond which a lack of fit is significant.
+const SIGNIFICANT: f64 = 6.0;
+
+/// Excess of the residual's variance over the noise's below which a lack of fit, however
+/// significant, is left to the noise model.
+const MEANINGFUL: f64 = 0.15;
+
+/// Degrees of freedom that smoothing leaves of each row: one over the effective width of its kernel.
+const SMOOTH_FREEDOM: f64 = 0.19;
+
+/// Share of a generic column that must be its own: there are many, and some are nearly alike.
+const GENERIC_OWN: f64 = 1e-5;
+
+/// Rows about a standstill that do not take part.
+const AROUND_REST: usize = 5;
+
+/// Share of the lack of fit that naming must close, if what is left is significant.
+const CLOSED: f64 = 0.9;
+
+/// Share of what is not explained that a variable must explain to be mentioned.
+const MENTIONED: f64 = 0.15;
+
+/// Lack of fit of each joint.
+pub(super) fn lacks(bench: &Bench<'_>, null: &Null, state: &State) -> Vec<Lack> {
+    let joints = 0..bench.train.joints();
+    if null.repeats.is_empty() {
+        return joints
+            .map(|joint| against_generic(&null.generic[joint], bench, state, joint))
+            .collect();
+    }
+    joints
+        .map(|joint| {
+            let weights = away_from_rest(&effective_weights(bench, joint));
+            let residual = smoothed(state.system.residual(joint));
+            let mut error = pure_error(&residual, &weights, &null.repeats);
+            error.repeated.1 *= SMOOTH_FREEDOM;
+            error.between.1 *= SMOOTH_FREEDOM;
+            lack_of_fit(&error, state.system.leverage(joint))
+        })
+        .collect()
+}
+
+/// Weights with the rows about those that count for less left out.
+fn away_from_rest(weights: &[f64]) -> Vec<f64> {
+    let near = |t: usize| t.saturating_sub(AROUND_REST)..(t + AROUND_REST + 1).min(weights.len());
+    let weight = |t: usize| {
+        if weights[near(t)].iter().all(|w| *w >= 1.0) {
+            1.0
+        } else {
+            0.0
+        }
+    };
+    (0..weights.len()).map(weight).collect()
+}
+
+/// What the whitened rows of a joint count for.
+fn effective_weights(bench: &Bench<'_>, joint: usize) -> Vec<f64> {
+    let weights = &bench.train.weights[joint];
+    let mut all: Vec<f64> = (0..weights.len()).map(|t| effective(weights, t)).collect();
+    for segment in &bench.train.segments {
+        all[segment.clone()]
+            .iter_mut()
+            .take(ORDER)
+            .for_each(|weight| *weight = 0.0);
+    }
+    all
+}
+
+/// The present residual against what the generic model leaves.
+fn against_generic(columns: &[Sparse], bench: &Bench<'_>, state: &State, joint: usize) -> Lack {
+    let gain = state.system.gain_of(columns, &[], GENERIC_OWN);
+    let residual = state.system.residual(joint);
+    let square = super::linear::dot(residual, residual);
+    let rows = effective_weights(bench, joint)
+        .iter()
+        .map(|w| w * w)
+        .sum::<f64>();
+    let above = gain.columns().max(1) as f64;
+    let below = (rows - state.system.leverage(joint) - above).max(1.0);
+    let noise = (square - gain.square) / below;
+    let mut lack = Lack::new(
+        gain.square / above / noise.max(f64::MIN_POSITIVE),
+        above,
+        below,
+    );
+    // As a share of the noise in all rows, as with repeated logs.
+    lack.excess = (gain.square - above * noise) / (noise * below).max(f64::MIN_POSITIVE);
+    lack
+}
+
+/// Whether the gap is open: some joint lacks fit.
+pub(super) fn open(lacks: &[Lack]) -> bool {
+    lacks.iter().any(is_open)
+}
+
+fn is_open(lack: &Lack) -> bool {
+    lack.z > SIGNIFICANT && lack.excess > MEANINGFUL
+}
+
+/// Whether effects explain what was open: nothing significant is left, or at least nine tenths of
+/// every significant excess are closed.
+pub(super) fn closed(before: &[Lack], after: &[Lack]) -> bool {
+    let excess = |lacks: &[Lack]| lacks.iter().map(|lack| lack.excess.max(0.0)).sum::<f64>();
+    !open(after) || excess(after) <= (1.0 - CLOSED) * excess(before)
+}
+
+/// The joints whose gap is open, the share of the residual that is no noise (percent), and the
+/// variables that it varies with.
+pub(super) fn located(
+    bench: &Bench<'_>,
+    lacks: &[Lack],
+    state: &State,
+) -> Vec<(usize, f64, Vec<&'static str>)> {
+    let lacking = lacks.iter().enumerate().filter(|(_, lack)| is_open(lack));
+    lacking
+        .map(|(joint, lack)| {
+            let share = lack.excess / (1.0 + lack.excess);
+            let residual = state.system.residual(joint);
+            let square = share * super::linear::dot(residual, residual);
+            (
+                joint,
+                100.0 * share,
+                varies_with(bench, state, joint, square),
+            )
+        })
+        .collect()
+}
+
+fn varies_with(bench: &Bench<'_>, state: &State, joint: usize, square: f64) -> Vec<&'static str> {
+    let kind = bench.model.joints()[joint].kind;
+    let mut columns: Vec<(&'static str, Vec<f64>)> = Vec::new();
+    for (track, predicted) in bench.train.tracks.iter().zip(&state.predicted) {
+        let own = generic::columns(track, predicted, (joint, kind));
+        if columns.is_empty() {
+            columns = generic::variables()
+                .into_iter()
+                .map(|name| (name, Vec::new()))
+                .collect();
+        }
+        columns
+            .iter_mut()
+            .zip(own)
+            .for_each(|((_, all), more)| all.extend(more));
+    }
+    let mut found: Vec<(&'static str, f64)> = Vec::new();
+    for name in generic::VARIABLES {
+        let of_name = columns.iter().filter(|(variable, _)| variable == &name);
+        let white: Vec<Sparse> = of_name
+            .map(|(_, rows)| bench.train.whiten(&[(joint, rows.clone())], bench.noise))
+            .collect();
+        let gain = state.system.gain(&white, &[]);
+        found.push((name, gain.square - gain.columns() as f64));
+    }
+    found.sort_by(|a, b| b.1.total_cmp(&a.1));
+    found.retain(|(_, gain)| *gain > MENTIONED * square);
+    found.into_iter().take(3).map(|(name, _)| name).collect()
+}

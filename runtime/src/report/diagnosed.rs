@@ -1,0 +1,158 @@
+//! A diagnosis as text for a terminal.
+
+use std::fmt::Write;
+
+use super::table::significant;
+use super::{Diagnosis, FoundEffect, Verdict};
+
+/// Renders a diagnosis: the verdict, each effect with its parameters and how sure it is, where the
+/// gap is, how it shrinks, what was rejected. A function of the value alone.
+pub fn diagnosed(diagnosis: &Diagnosis) -> String {
+    let mut text = format!("{}: {}\n", diagnosis.robot, sentence(diagnosis));
+    for effect in &diagnosis.effects {
+        text.push('\n');
+        text.push_str(&named(effect));
+    }
+    located(&mut text, diagnosis);
+    gap(&mut text, diagnosis);
+    if !diagnosis.rejected.is_empty() {
+        text.push_str("\nlooked at and not taken\n");
+    }
+    // Writing to a String does not fail.
+    for rejected in &diagnosis.rejected {
+        let place = place(rejected.joint.as_deref(), &rejected.joints);
+        let _ = writeln!(text, "  {}{place}: {}", rejected.effect, rejected.why);
+    }
+    for (k, warning) in diagnosis.warnings.iter().enumerate() {
+        let gap = if k == 0 { "\n" } else { "" };
+        let _ = writeln!(text, "{gap}warning: {warning}");
+    }
+    text
+}
+
+fn sentence(diagnosis: &Diagnosis) -> &'static str {
+    match (diagnosis.verdict, diagnosis.effects.len()) {
+        (Verdict::Nothing, _) => "nothing is missing that this log could show",
+        (Verdict::Named, 1) => "one effect is missing, and it explains the gap",
+        (Verdict::Named, _) => "effects are missing, and they explain the gap",
+        (Verdict::Unknown, 0) => "something is missing that the catalogue does not know",
+        (Verdict::Unknown, _) => {
+            "something is missing; what was found helps and does not explain the gap"
+        }
+    }
+}
+
+fn named(effect: &FoundEffect) -> String {
+    let place = place(effect.joint.as_deref(), &effect.joints);
+    let mut text = format!(
+        "{}{place}: {}\n  torque {}\n",
+        effect.effect, effect.meaning, effect.formula
+    );
+    for parameter in &effect.parameters {
+        let sigma = parameter.sigma.map_or_else(
+            || " (not determined)".to_owned(),
+            |sigma| format!(" +- {}", significant(sigma, 2)),
+        );
+        let value = significant(parameter.value, 4);
+        let _ = writeln!(
+            text,
+            "  {} = {value}{sigma} {}",
+            parameter.name, parameter.unit
+        );
+    }
+    for (name, value) in &effect.shape {
+        let _ = writeln!(text, "  {name} = {}", significant(*value, 4));
+    }
+    let _ = writeln!(
+        text,
+        "  lowers the torque error by {} %; by chance with probability {:.1e}",
+        significant(effect.gain_pct, 3),
+        effect.p_value
+    );
+    let rivals: Vec<String> = effect
+        .alternatives
+        .iter()
+        .filter(|other| !other.separable)
+        .map(|other| {
+            format!(
+                "{}{}",
+                other.effect,
+                self::place(other.joint.as_deref(), &other.joints)
+            )
+        })
+        .collect();
+    if !rivals.is_empty() {
+        let _ = writeln!(
+            text,
+            "  cannot be told on these logs from {}\n  to tell: {}",
+            rivals.join(", "),
+            effect.experiment
+        );
+    }
+    text
+}
+
+fn place(joint: Option<&str>, joints: &[usize]) -> String {
+    match (joint, joints) {
+        (Some(name), [number]) => format!(" on joint {number} ({name})"),
+        (_, []) => String::new(),
+        (_, many) => {
+            let many: Vec<String> = many.iter().map(usize::to_string).collect();
+            format!(" on joints {}", many.join(" and "))
+        }
+    }
+}
+
+fn located(text: &mut String, diagnosis: &Diagnosis) {
+    if !diagnosis.located.is_empty() {
+        text.push_str("\nwhere the gap is\n");
+    }
+    for joint in &diagnosis.located {
+        let with = match joint.varies_with.is_empty() {
+            true => String::new(),
+            false => format!(", varies with {}", joint.varies_with.join(", ")),
+        };
+        let _ = writeln!(
+            text,
+            "  {}: {} % of the residual is no noise{with}",
+            joint.joint,
+            significant(joint.unexplained_pct, 2)
+        );
+    }
+}
+
+fn gap(text: &mut String, diagnosis: &Diagnosis) {
+    let gap = &diagnosis.gap;
+    let _ = writeln!(text, "\ntorque error on {}", gap.on);
+    let (before, after) = (&gap.torque.before, &gap.torque.after);
+    let total = (
+        significant(before.total_pct, 3),
+        significant(after.total_pct, 3),
+    );
+    let _ = writeln!(text, "  all joints: {} % -> {} %", total.0, total.1);
+    for (before, after) in before.joints.iter().zip(&after.joints) {
+        let _ = writeln!(
+            text,
+            "  {}: {} -> {} {}",
+            before.name,
+            significant(before.rmse, 3),
+            significant(after.rmse, 3),
+            before.unit
+        );
+    }
+    if let Some(simulation) = &gap.simulation {
+        let rms = |values: &[f64]| -> String {
+            values
+                .iter()
+                .map(|v| significant(*v, 3))
+                .collect::<Vec<_>>()
+                .join(", ")
+        };
+        let _ = writeln!(
+            text,
+            "simulated position, rms of each joint: {} -> {}",
+            rms(&simulation.before.rms),
+            rms(&simulation.after.rms)
+        );
+    }
+}

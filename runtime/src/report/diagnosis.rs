@@ -1,0 +1,146 @@
+//! What a diagnosis finds, as one serialisable value.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use super::Fit;
+
+/// What a diagnosis comes to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Verdict {
+    /// Effects were found that explain the gap.
+    Named,
+    /// Nothing is established.
+    Nothing,
+    /// Something is missing that no entry of the catalogue explains.
+    Unknown,
+}
+
+/// The result of a diagnosis.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Diagnosis {
+    /// The robot's name.
+    pub robot: String,
+    /// What it comes to.
+    pub verdict: Verdict,
+    /// The effects found, strongest first; with the verdict `unknown` they help and do not
+    /// explain.
+    pub effects: Vec<FoundEffect>,
+    /// What was looked at closely and not taken.
+    pub rejected: Vec<RejectedEffect>,
+    /// The joints whose torque the model without them does not explain.
+    #[serde(rename = "where")]
+    pub located: Vec<Located>,
+    /// The gap before and after.
+    pub gap: Gap,
+    /// What is to be said about the logs.
+    pub warnings: Vec<String>,
+}
+
+/// A parameter of an effect.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct EffectParameter {
+    /// Name, such as `FST3`.
+    pub name: String,
+    /// SI unit.
+    pub unit: String,
+    /// Value.
+    pub value: f64,
+    /// Standard deviation under coloured noise; `None` where the log does not determine it.
+    pub sigma: Option<f64>,
+}
+
+/// An effect that was found.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FoundEffect {
+    /// Name in the catalogue.
+    pub effect: String,
+    /// Name of the joint; `None` for several or the whole robot.
+    pub joint: Option<String>,
+    /// Joints, counted from 1; empty for the whole robot.
+    pub joints: Vec<usize>,
+    /// What it is.
+    pub meaning: String,
+    /// Its torque.
+    pub formula: String,
+    /// Its parameters.
+    pub parameters: Vec<EffectParameter>,
+    /// Its shape, SI, by name.
+    pub shape: BTreeMap<String, f64>,
+    /// Probability of such a gain by chance, corrected for the number of hypotheses tried.
+    pub p_value: f64,
+    /// By how much it lowers the torque error, percent of the error without it.
+    pub gain_pct: f64,
+    /// Other explanations.
+    pub alternatives: Vec<Alternative>,
+    /// The log that would tell it from what it is often taken for.
+    pub experiment: String,
+}
+
+/// Another explanation of what an effect explains.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Alternative {
+    /// Name in the catalogue.
+    pub effect: String,
+    /// Name of the joint; `None` for several or the whole robot.
+    pub joint: Option<String>,
+    /// Joints, counted from 1.
+    pub joints: Vec<usize>,
+    /// As of the effect.
+    pub p_value: f64,
+    /// Whether this log tells the two apart.
+    pub separable: bool,
+}
+
+/// A hypothesis that was not taken.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RejectedEffect {
+    /// Name in the catalogue.
+    pub effect: String,
+    /// Name of the joint; `None` for several or the whole robot.
+    pub joint: Option<String>,
+    /// Joints, counted from 1.
+    pub joints: Vec<usize>,
+    /// Why not.
+    pub why: String,
+}
+
+/// A joint whose torque is not explained.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Located {
+    /// Name of the joint.
+    pub joint: String,
+    /// Share of the residual's variance that is no noise, percent.
+    pub unexplained_pct: f64,
+    /// What it varies with.
+    pub varies_with: Vec<String>,
+}
+
+/// The gap before and after.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Gap {
+    /// Torque predicted from the logged motion.
+    pub torque: Change<Fit>,
+    /// Position of the closed-loop simulation; absent without reference and controller.
+    pub simulation: Option<Change<Rms>>,
+    /// What it was measured on.
+    pub on: String,
+}
+
+/// Something before and after.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Change<T> {
+    /// Without the effects.
+    pub before: T,
+    /// With them.
+    pub after: T,
+}
+
+/// Root mean square of each joint, rad or m.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Rms {
+    /// By joint.
+    pub rms: Vec<f64>,
+}

@@ -1,0 +1,182 @@
+//! `idim diagnose`: which effect a robot's model lacks, and how much of the gap it closes.
+
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+
+use idim::catalogue::{Effects, entries};
+use idim::runtime::diagnose::{Log, Options, Prediction, diagnose};
+use idim::runtime::log::{self, LogSpec, ReadOptions, Recording};
+use idim::runtime::model::IdentificationModel;
+use idim::runtime::report::diagnosed;
+
+use super::progress::Spinner;
+use super::{Failure, output, robot};
+
+/// Arguments of `idim diagnose`.
+#[derive(Debug, clap::Args)]
+pub struct Arguments {
+    /// Name of a built-in robot, or path of a .urdf or .toml.
+    #[arg(required_unless_present = "list")]
+    robot: Option<String>,
+    /// Logs to diagnose: LOG, LOG@5..7.5 (seconds) or LOG@#635..3510 (rows).
+    #[arg(required_unless_present = "list", value_name = "LOG")]
+    logs: Vec<String>,
+    /// A log of another motion, to confirm and prove; may be given several times.
+    #[arg(long, value_name = "LOG")]
+    validate: Vec<String>,
+    /// Folder for the torques predicted along each validation log, before and after.
+    #[arg(long, value_name = "DIR", requires = "validate")]
+    predictions: Option<PathBuf>,
+    /// Cut-off of the prefilter of q, Hz.
+    #[arg(long, value_name = "HZ")]
+    fq: Option<f64>,
+    /// Decimation ratio.
+    #[arg(long, value_name = "N")]
+    nd: Option<usize>,
+    /// Log companion, instead of the .toml beside each log.
+    #[arg(long, value_name = "FILE")]
+    map: Option<PathBuf>,
+    /// Write the result as JSON; `-` for standard output.
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+    /// Print nothing but what was asked for as a file.
+    #[arg(long)]
+    quiet: bool,
+    /// Print the catalogue: names, formulas, parameters, what they are confused with.
+    #[arg(long, exclusive = true)]
+    list: bool,
+}
+
+/// Diagnoses, reports.
+///
+/// # Errors
+/// [`Failure`]: a robot or log that cannot be read, a diagnosis that is not possible, a file that
+/// cannot be written.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let Some(name) = arguments.robot.as_deref().filter(|_| !arguments.list) else {
+        return output::print(&listing());
+    };
+    let spinner = Spinner::new(arguments.quiet);
+    let robot = robot::derived(name)?;
+    let model = robot::model(name)?;
+    let read = |names| read(model.as_ref(), names, arguments.map.as_deref(), &spinner);
+    let (train, validate) = (read(&arguments.logs)?, read(&arguments.validate)?);
+    let options = Options {
+        fq_hz: arguments.fq,
+        nd: arguments.nd,
+    };
+    let catalogue = Effects::new(&robot);
+    let (diagnosis, predictions) = diagnose(
+        model.as_ref(),
+        &catalogue,
+        (&train, &validate),
+        &options,
+        &spinner,
+    )?;
+    if let Some(folder) = &arguments.predictions {
+        write(folder, &validate, &predictions)?;
+    }
+    spinner.finish();
+    if let Some(path) = &arguments.json {
+        output::json(path, &diagnosis)?;
+    }
+    if arguments.quiet || output::claims_stdout(arguments.json.as_deref()) {
+        return Ok(());
+    }
+    output::print(&diagnosed(&diagnosis))
+}
+
+/// The catalogue as text.
+fn listing() -> String {
+    let names = |pairs: &[(&str, &str)]| -> String {
+        let pair = |(name, unit): &(&str, &str)| match unit.is_empty() {
+            true => (*name).to_owned(),
+            false => format!("{name} ({unit})"),
+        };
+        pairs.iter().map(pair).collect::<Vec<_>>().join(", ")
+    };
+    let mut text = String::new();
+    for entry in entries() {
+        text.push_str(&format!(
+            "{}: {}\n  torque: {}\n",
+            entry.name, entry.meaning, entry.formula
+        ));
+        let mut line = |what: &str, of: String| {
+            if !of.is_empty() {
+                text.push_str(&format!("  {what}: {of}\n"));
+            }
+        };
+        line("parameters", names(entry.parameters));
+        line("shape", names(entry.shape));
+        line("often taken for", entry.confused_with.join(", "));
+        line("to tell", entry.experiment.to_owned());
+    }
+    text
+}
+
+fn read(
+    model: &dyn IdentificationModel,
+    names: &[String],
+    map: Option<&Path>,
+    spinner: &Spinner,
+) -> Result<Vec<Log>, Failure> {
+    let options = ReadOptions {
+        require_torque: true,
+        companion: map.map(Path::to_owned),
+    };
+    let read = |name: &String| {
+        spinner.say(&format!("reading {name}"));
+        let spec: LogSpec = name.parse()?;
+        let drives = &model.settings().drives;
+        let (recording, companion) = log::read(&spec, model.joints(), drives, &options)?;
+        Ok(Log {
+            recording,
+            companion,
+        })
+    };
+    names.iter().map(read).collect()
+}
+
+/// `LOGSTEM_before.csv.gz` and `LOGSTEM_after.csv.gz` of each validation log: t, tau1.. on its rows.
+fn write(folder: &Path, logs: &[Log], predictions: &[Prediction]) -> Result<(), Failure> {
+    std::fs::create_dir_all(folder).map_err(|source| Failure::Write {
+        path: folder.to_owned(),
+        source,
+    })?;
+    let mut seen: HashMap<&str, usize> = HashMap::new();
+    for (Log { recording, .. }, prediction) in logs.iter().zip(predictions) {
+        let count = seen.entry(&recording.stem).or_default();
+        *count += 1;
+        // Two parts of one file must not overwrite each other.
+        let stem = match *count {
+            1 => recording.stem.clone(),
+            count => format!("{}-{count}", recording.stem),
+        };
+        for (when, torque) in [("before", &prediction.before), ("after", &prediction.after)] {
+            torques(
+                &folder.join(format!("{stem}_{when}.csv.gz")),
+                recording,
+                torque,
+            )?;
+        }
+    }
+    Ok(())
+}
+
+fn torques(path: &Path, recording: &Recording, torque: &[Vec<f64>]) -> Result<(), Failure> {
+    let rows: Vec<Vec<f64>> = torque
+        .iter()
+        .map(|series| log::onto_stamps(recording, series))
+        .collect();
+    let names: Vec<String> = (1..=rows.len())
+        .map(|joint| format!("tau{joint}"))
+        .collect();
+    let series = names
+        .iter()
+        .map(String::as_str)
+        .zip(rows.iter().map(Vec::as_slice));
+    let columns: Vec<(&str, &[f64])> = std::iter::once(("t", recording.stamps.as_slice()))
+        .chain(series)
+        .collect();
+    Ok(log::write(path, &columns)?)
+}
