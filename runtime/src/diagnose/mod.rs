@@ -32,6 +32,7 @@ use crate::identify::{self, Progress};
 use crate::model::IdentificationModel;
 use crate::observe::Filtering;
 use crate::report::Diagnosis;
+use crate::settings::Derivatives;
 use joined::Joined;
 use null::{Null, Prior};
 use state::{Bench, State};
@@ -166,6 +167,8 @@ fn filtering(
     let asked = identify::Options {
         fq_hz: Some(fq_hz),
         nd: Some(nd),
+        // Velocities near rest are treated here, and otherwise.
+        derivatives: Some(Derivatives::Central),
         ..identify::Options::default()
     };
     Ok(asked.resolve(model, std::slice::from_ref(first))?.filtering)

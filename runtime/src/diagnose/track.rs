@@ -90,7 +90,11 @@ impl Track {
         if companion.controller.is_some() {
             motion.tau.iter_mut().flatten().for_each(|tau| held(tau));
         }
-        let dead_band = dead_band(&motion, companion.encoder_resolution, filtering);
+        let steps: Vec<f64> = match companion.encoder_resolution {
+            Some(step) => vec![step; recording.q.len()],
+            None => recording.q.iter().map(|q| smallest_step(q)).collect(),
+        };
+        let dead_band = dead_band(&motion, &steps, filtering);
         let qd = motion.qd.iter_mut().zip(&dead_band);
         qd.for_each(|(qd, band)| through_rest(qd, *band));
         let rested = Rested::new(model, dead_band.clone());
@@ -230,16 +234,23 @@ fn inner(motion: &Motion, filtering: &Filtering, decimator: &Decimator) -> Vec<u
 
 /// Velocity under which the sign is not certain: the noise that quantised positions leave behind
 /// prefilter and difference.
-fn dead_band(motion: &Motion, resolution: Option<f64>, filtering: &Filtering) -> Vec<f64> {
-    let white = resolution.unwrap_or(0.0) / 12f64.sqrt();
+fn dead_band(motion: &Motion, steps: &[f64], filtering: &Filtering) -> Vec<f64> {
     let cut_off = filtering.fq_hz.min(0.4 * motion.rate_hz);
     let w = 2.0 * std::f64::consts::PI * cut_off;
-    let noise = white * w * (2.0 * cut_off / (3.0 * motion.rate_hz)).sqrt();
-    let of_joint = |qd: &Vec<f64>| {
+    let noise = w * (2.0 * cut_off / (3.0 * motion.rate_hz)).sqrt();
+    let of_joint = |(qd, step): (&Vec<f64>, &f64)| {
         let top = qd.iter().fold(0.0_f64, |top, v| top.max(v.abs()));
-        (UNCERTAIN * noise).max(SLOW * top)
+        let white = step / 12f64.sqrt();
+        (UNCERTAIN * white * noise).max(SLOW * top)
     };
-    motion.qd.iter().map(of_joint).collect()
+    motion.qd.iter().zip(steps).map(of_joint).collect()
+}
+
+/// The smallest step between neighbours that differ: an encoder's resolution, where none is stated.
+fn smallest_step(q: &[f64]) -> f64 {
+    let steps = q.windows(2).map(|pair| (pair[1] - pair[0]).abs());
+    let smallest = steps.filter(|s| *s > 0.0).fold(f64::INFINITY, f64::min);
+    if smallest.is_finite() { smallest } else { 0.0 }
 }
 
 /// The torque at each sample of a controller that runs once a sample and holds its torque until the
