@@ -12,6 +12,7 @@ mod filtering;
 mod motion;
 mod regressor;
 mod slip;
+mod stream;
 mod stretch;
 mod torque;
 
