@@ -9,6 +9,10 @@ use crate::report::{Disagreement, ModelResult};
 /// true models seldom come near.
 const BEYOND: f64 = 3.0;
 
+/// A smaller share of a parameter than this is no disagreement worth a word, however sharp both
+/// models are: logs without noise have no standard deviations to speak of.
+const WORTH: f64 = 1e-3;
+
 /// Every parameter on which two models disagree, by the standard deviations that respect correlated
 /// residuals where there are any. The worst first.
 pub(super) fn disagreements(models: &[ModelResult]) -> Vec<Disagreement> {
@@ -20,7 +24,8 @@ pub(super) fn disagreements(models: &[ModelResult]) -> Vec<Disagreement> {
                 let sigma = |p: &crate::report::ParameterResult| p.sigma_corrected.or(p.sigma);
                 let (x, y) = (a.value?, b.value?);
                 let sigmas = (x - y).abs() / sigma(a)?.hypot(sigma(b)?);
-                (sigmas > BEYOND).then(|| Disagreement {
+                let worth = (x - y).abs() > WORTH * x.abs().max(y.abs());
+                (sigmas > BEYOND && worth).then(|| Disagreement {
                     parameter: a.name.clone(),
                     models: [first.name, second.name],
                     values: [x, y],
