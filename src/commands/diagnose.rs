@@ -1,14 +1,14 @@
 //! `idim diagnose`: which effect a robot's model lacks, and how much of the gap it closes.
 
-use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use idim::catalogue::{Effects, entries};
 use idim::runtime::diagnose::{Log, Options, Prediction, diagnose};
-use idim::runtime::log::{self, LogSpec, ReadOptions, Recording};
+use idim::runtime::log::{self, LogSpec, ReadOptions};
 use idim::runtime::model::IdentificationModel;
 use idim::runtime::report::diagnosed;
 
+use super::predictions::Predictions;
 use super::progress::Spinner;
 use super::{Failure, output, robot};
 
@@ -74,7 +74,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         &spinner,
     )?;
     if let Some(folder) = &arguments.predictions {
-        write(folder, &validate, &predictions)?;
+        write(folder, &validate, predictions)?;
     }
     spinner.finish();
     if let Some(path) = &arguments.json {
@@ -138,45 +138,10 @@ fn read(
 }
 
 /// `LOGSTEM_before.csv.gz` and `LOGSTEM_after.csv.gz` of each validation log: t, tau1.. on its rows.
-fn write(folder: &Path, logs: &[Log], predictions: &[Prediction]) -> Result<(), Failure> {
-    std::fs::create_dir_all(folder).map_err(|source| Failure::Write {
-        path: folder.to_owned(),
-        source,
-    })?;
-    let mut seen: HashMap<&str, usize> = HashMap::new();
-    for (Log { recording, .. }, prediction) in logs.iter().zip(predictions) {
-        let count = seen.entry(&recording.stem).or_default();
-        *count += 1;
-        // Two parts of one file must not overwrite each other.
-        let stem = match *count {
-            1 => recording.stem.clone(),
-            count => format!("{}-{count}", recording.stem),
-        };
-        for (when, torque) in [("before", &prediction.before), ("after", &prediction.after)] {
-            torques(
-                &folder.join(format!("{stem}_{when}.csv.gz")),
-                recording,
-                torque,
-            )?;
-        }
+fn write(folder: &Path, logs: &[Log], predictions: Vec<Prediction>) -> Result<(), Failure> {
+    let mut files = Predictions::new(folder)?;
+    for (log, Prediction { before, after }) in logs.iter().zip(predictions) {
+        files.write(&log.recording, [("before", before), ("after", after)])?;
     }
     Ok(())
-}
-
-fn torques(path: &Path, recording: &Recording, torque: &[Vec<f64>]) -> Result<(), Failure> {
-    let rows: Vec<Vec<f64>> = torque
-        .iter()
-        .map(|series| log::onto_stamps(recording, series))
-        .collect();
-    let names: Vec<String> = (1..=rows.len())
-        .map(|joint| format!("tau{joint}"))
-        .collect();
-    let series = names
-        .iter()
-        .map(String::as_str)
-        .zip(rows.iter().map(Vec::as_slice));
-    let columns: Vec<(&str, &[f64])> = std::iter::once(("t", recording.stamps.as_slice()))
-        .chain(series)
-        .collect();
-    Ok(log::write(path, &columns)?)
 }

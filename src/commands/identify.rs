@@ -1,18 +1,18 @@
 //! `idim identify`: parameters from measured logs, by the three models side by side.
 
-use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 use idim::runtime::identify::{
     Options, PriorUse, identify, instruments, payload, predict, series, settle_units,
 };
-use idim::runtime::log::{self, Companion, Log, LogSpec, ReadOptions, Recording};
+use idim::runtime::log::{Companion, Log, LogSpec, ReadOptions, Recording};
 use idim::runtime::model::IdentificationModel;
 use idim::runtime::observe::ModelKind;
-use idim::runtime::report::{Identification, Role, html, payload_terminal, terminal};
+use idim::runtime::report::{Identification, ModelResult, Role, html, payload_terminal, terminal};
 use idim::runtime::settings::{Derivatives, Edges, Velocity, Weights};
 
+use super::predictions::Predictions;
 use super::progress::Spinner;
 use super::simulate::parameters;
 use super::{Failure, fits, gains, output, robot};
@@ -392,44 +392,21 @@ fn predictions(
     result: &Identification,
     folder: &Path,
 ) -> Result<(), Failure> {
-    std::fs::create_dir_all(folder).map_err(|source| Failure::Write {
-        path: folder.to_owned(),
-        source,
-    })?;
-    let mut seen: HashMap<&str, usize> = HashMap::new();
+    let mut files = Predictions::new(folder)?;
     for recording in logs {
-        let count = seen.entry(&recording.stem).or_default();
-        *count += 1;
-        // Two parts of one file must not overwrite each other.
-        let stem = match *count {
-            1 => recording.stem.clone(),
-            count => format!("{}-{count}", recording.stem),
+        let along = |found: &ModelResult| {
+            let (x, kind) = (found.solution(), found.name);
+            Ok((
+                kind.name(),
+                predict(model, recording, &x, &result.filter, kind)?,
+            ))
         };
-        for found in &result.models {
-            let torque = predict(
-                model,
-                recording,
-                &found.solution(),
-                &result.filter,
-                found.name,
-            )?;
-            let rows: Vec<Vec<f64>> = torque
-                .iter()
-                .map(|series| log::onto_stamps(recording, series))
-                .collect();
-            let names: Vec<String> = (1..=rows.len())
-                .map(|joint| format!("tau{joint}"))
-                .collect();
-            let mut columns: Vec<(&str, &[f64])> = vec![("t", &recording.stamps)];
-            columns.extend(
-                names
-                    .iter()
-                    .map(String::as_str)
-                    .zip(rows.iter().map(Vec::as_slice)),
-            );
-            let file = format!("{stem}_{}.csv.gz", found.name.name());
-            log::write(&folder.join(file), &columns)?;
-        }
+        let torques: Vec<_> = result
+            .models
+            .iter()
+            .map(along)
+            .collect::<Result<_, Failure>>()?;
+        files.write(recording, torques)?;
     }
     Ok(())
 }

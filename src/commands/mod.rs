@@ -11,6 +11,7 @@ mod gains;
 mod generate;
 mod identify;
 mod output;
+mod predictions;
 mod progress;
 mod robot;
 mod simulate;

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::catalogue::{ColumnsAlong, Hypothesis, Signals, TorqueColumn};
 use super::rest::Rested;
-use crate::log::{Companion, Recording};
+use crate::log::{Companion, Recording, resolution};
 use crate::model::{ColumnKind, IdentificationModel, Output};
 use crate::observe::{
     Equations, Filtering, ModelKind, Motion, ObserveError, check_torque, contract, equations_at,
@@ -92,7 +92,7 @@ impl Track {
         }
         let steps: Vec<f64> = match companion.encoder_resolution {
             Some(step) => vec![step; recording.q.len()],
-            None => recording.q.iter().map(|q| smallest_step(q)).collect(),
+            None => recording.q.iter().map(|q| resolution(q)).collect(),
         };
         let dead_band = dead_band(&motion, &steps, filtering);
         let qd = motion.qd.iter_mut().zip(&dead_band);
@@ -244,13 +244,6 @@ fn dead_band(motion: &Motion, steps: &[f64], filtering: &Filtering) -> Vec<f64> 
         (UNCERTAIN * white * noise).max(SLOW * top)
     };
     motion.qd.iter().zip(steps).map(of_joint).collect()
-}
-
-/// The smallest step between neighbours that differ: an encoder's resolution, where none is stated.
-fn smallest_step(q: &[f64]) -> f64 {
-    let steps = q.windows(2).map(|pair| (pair[1] - pair[0]).abs());
-    let smallest = steps.filter(|s| *s > 0.0).fold(f64::INFINITY, f64::min);
-    if smallest.is_finite() { smallest } else { 0.0 }
 }
 
 /// The torque at each sample of a controller that runs once a sample and holds its torque until the

@@ -1,7 +1,7 @@
 //! Whether anything moves in the logs, and how far.
 
 use super::{IdentifyError, choice};
-use crate::log::{Recording, Samples};
+use crate::log::{Recording, Samples, resolution};
 use crate::observe::{ModelKind, rests};
 use crate::signal::bandwidth;
 
@@ -63,7 +63,7 @@ fn seen(logs: &[Recording]) -> String {
     let of_joint = |joint: usize| {
         let series = logs.iter().filter_map(|log| log.q.get(joint));
         let (range, step) = series
-            .map(|q| (range(q), step(q)))
+            .map(|q| (range(q), resolution(q)))
             .max_by(|a, b| a.0.total_cmp(&b.0))
             .unwrap_or((0.0, 0.0));
         let number = joint + 1;
@@ -83,20 +83,11 @@ fn seen(logs: &[Recording]) -> String {
 fn moves(q: &[f64], rate_hz: f64) -> bool {
     let range = range(q);
     let noise = || q.len() >= FEWEST && bandwidth(q, rate_hz).is_none();
-    !rests(q) && range > STEPS * step(q) && (range > BEYOND_NOISE || !noise())
+    !rests(q) && range > STEPS * resolution(q) && (range > BEYOND_NOISE || !noise())
 }
 
 fn range(q: &[f64]) -> f64 {
     let low = q.iter().copied().fold(f64::INFINITY, f64::min);
     let high = q.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     (high - low).max(0.0)
-}
-
-/// The smallest step between neighbours that differ; zero if none do.
-fn step(q: &[f64]) -> f64 {
-    let steps = q.windows(2).map(|pair| (pair[1] - pair[0]).abs());
-    let smallest = steps
-        .filter(|step| *step > 0.0)
-        .fold(f64::INFINITY, f64::min);
-    if smallest.is_finite() { smallest } else { 0.0 }
 }

@@ -12,6 +12,10 @@ use crate::settings::Weights;
 /// nothing that would look at single rows again is worth their memory (16 MB).
 const KEPT: usize = 2_000_000;
 
+/// Nor are logs with more samples of all joints than this taken into memory, however few rows are
+/// left of them: their motion takes six times as many numbers (48 MB).
+const KEPT_SAMPLES: usize = 1_000_000;
+
 /// Equations with more entries than this are not kept for the sake of weights either (400 MB).
 const KEPT_FOR_WEIGHTS: usize = 50_000_000;
 
@@ -44,13 +48,15 @@ impl Observed {
     ) -> Result<Self, IdentifyError> {
         let equations = log.len() / plan.filtering.nd.max(1) * model.joints().len();
         let entries = equations.saturating_mul(model.columns().len());
+        let samples = log.len().saturating_mul(model.joints().len());
+        let few = entries <= KEPT && samples <= KEPT_SAMPLES;
         match plan.weights {
             Weights::Robust if entries > KEPT_FOR_WEIGHTS => Err(IdentifyError::TooLongForRobust {
                 log: log.name().to_owned(),
                 samples: log.len(),
             }),
             Weights::Robust => Observed::kept(model, log, plan, progress),
-            _ if entries <= KEPT => Observed::kept(model, log, plan, progress),
+            _ if few => Observed::kept(model, log, plan, progress),
             _ => Observed::streamed(model, log, plan, progress),
         }
     }

@@ -241,8 +241,8 @@ fn smooth(series: &[f64]) -> Vec<f64> {
     smooth
 }
 
-/// The smallest step between neighbours that differ.
-pub(super) fn resolution(series: &[f64]) -> f64 {
+/// The smallest step between neighbours that differ; zero if none do: a sensor's resolution.
+pub(crate) fn resolution(series: &[f64]) -> f64 {
     let steps = series.windows(2).map(|pair| (pair[1] - pair[0]).abs());
     let smallest = steps
         .filter(|&step| step > 0.0)

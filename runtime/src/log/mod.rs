@@ -46,6 +46,7 @@ mod tests;
 pub use any::Log;
 pub use closed_loop::{Controller, Feedforward, Fourier, Law, Reference, Start};
 pub use companion::{ColumnSource, Companion};
+pub(crate) use doubt::resolution;
 pub use error::{LogError, Problem};
 pub use long::{LongLog, is_long, read_long};
 pub use read::{ReadOptions, read};

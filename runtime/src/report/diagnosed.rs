@@ -65,9 +65,9 @@ fn named(effect: &FoundEffect) -> String {
     }
     let _ = writeln!(
         text,
-        "  lowers the torque error by {} %; by chance with probability {:.1e}",
+        "  lowers the torque error by {} %; by chance with probability {}",
         significant(effect.gain_pct, 3),
-        effect.p_value
+        probability(effect.p_value)
     );
     let rivals: Vec<String> = effect
         .alternatives
@@ -154,5 +154,13 @@ fn gap(text: &mut String, diagnosis: &Diagnosis) {
             rms(&simulation.before.rms),
             rms(&simulation.after.rms)
         );
+    }
+}
+
+/// A probability; below what numbers can hold it is no zero.
+fn probability(p: f64) -> String {
+    match p > 0.0 {
+        true => format!("{p:.1e}"),
+        false => "below 1e-300".to_owned(),
     }
 }

@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::super::error::{Found, LogError};
 use super::super::recording::Recording;
 use super::super::resample;
-use super::super::samples::Samples;
+use super::super::samples::{Samples, within};
 use super::LongLog;
 
 impl LongLog {
@@ -50,7 +50,7 @@ impl LongLog {
             q: group(&self.q)?,
             qd: self.qd.as_ref().map(group).transpose()?,
             tau: self.tau.as_ref().map(group).transpose()?,
-            doubtful: self.doubtful_in(&range),
+            doubtful: within(&self.doubtful, &range),
             stamps: self
                 .spool
                 .read(0, self.row_of(range.start)?..self.row_of(range.end)?)?,
@@ -60,20 +60,6 @@ impl LongLog {
 
     fn time(&self, sample: usize) -> f64 {
         self.start + sample as f64 / self.rate_hz
-    }
-
-    fn doubtful_in(&self, range: &Range<usize>) -> Vec<Range<usize>> {
-        let first = self
-            .doubtful
-            .partition_point(|doubtful| doubtful.end <= range.start);
-        let later = self.doubtful.get(first..).unwrap_or_default().iter();
-        later
-            .take_while(|doubtful| doubtful.start < range.end)
-            .map(|doubtful| {
-                let start = doubtful.start.max(range.start) - range.start;
-                start..doubtful.end.min(range.end) - range.start
-            })
-            .collect()
     }
 
     /// The rows that the samples are made of.
