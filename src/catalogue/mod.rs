@@ -11,6 +11,7 @@ mod bodies;
 mod described;
 mod drive;
 mod evaluate;
+mod extension;
 mod friction;
 mod geometry;
 mod guide;
@@ -32,6 +33,7 @@ use idim_codegen::robot::Output;
 use idim_runtime::diagnose::{Catalogue, ColumnsAlong, Entry, Hypothesis, Signals, TorqueColumn};
 
 pub use described::toml;
+pub use extension::Extension;
 pub use guide::guide;
 
 use along::Along;

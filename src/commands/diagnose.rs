@@ -3,13 +3,18 @@
 use std::path::{Path, PathBuf};
 
 use idim::catalogue::{Effects, entries};
+use idim::codegen::BuildError;
+use idim::codegen::base::BaseError;
 use idim::runtime::diagnose::{Log, Options, Prediction, diagnose};
 use idim::runtime::log::{self, LogSpec, ReadOptions};
 use idim::runtime::model::IdentificationModel;
 use idim::runtime::report::diagnosed;
 
+mod write;
+
 use super::predictions::Predictions;
 use super::progress::Spinner;
+use super::robot::Texts;
 use super::{Failure, output, robot};
 
 /// Arguments of `idim diagnose`.
@@ -24,6 +29,9 @@ pub struct Arguments {
     /// A log of another motion, to confirm and prove; may be given several times.
     #[arg(long, value_name = "LOG")]
     validate: Vec<String>,
+    /// Write the robot description with the effects found and the refitted parameters.
+    #[arg(long, value_name = "FILE")]
+    write: Option<PathBuf>,
     /// Folder for the torques predicted along each validation log, before and after.
     #[arg(long, value_name = "DIR", requires = "validate")]
     predictions: Option<PathBuf>,
@@ -74,16 +82,36 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         &spinner,
     )?;
     if let Some(folder) = &arguments.predictions {
-        write(folder, &validate, predictions)?;
+        predicted(folder, &validate, predictions)?;
+    }
+    let mut text = diagnosed(&diagnosis);
+    if let Some(path) = &arguments.write {
+        let extension = catalogue
+            .extension(&diagnosis)
+            .map_err(|source| not_extended(name, source))?;
+        write::write(path, &Texts::of(name)?, &diagnosis, &extension)?;
+        text += &write::summary(path, &diagnosis, &extension);
     }
     spinner.finish();
     if let Some(path) = &arguments.json {
         output::json(path, &diagnosis)?;
     }
-    if arguments.quiet || output::claims_stdout(arguments.json.as_deref()) {
+    let files = [&arguments.json, &arguments.write];
+    if arguments.quiet
+        || files
+            .iter()
+            .any(|file| output::claims_stdout(file.as_deref()))
+    {
         return Ok(());
     }
-    output::print(&diagnosed(&diagnosis))
+    output::print(&text)
+}
+
+fn not_extended(robot: &str, source: BaseError) -> Failure {
+    Failure::Description(BuildError::Base {
+        file: format!("{robot} with what was found"),
+        source,
+    })
 }
 
 /// The catalogue as text.
@@ -138,7 +166,7 @@ fn read(
 }
 
 /// `LOGSTEM_before.csv.gz` and `LOGSTEM_after.csv.gz` of each validation log: t, tau1.. on its rows.
-fn write(folder: &Path, logs: &[Log], predictions: Vec<Prediction>) -> Result<(), Failure> {
+fn predicted(folder: &Path, logs: &[Log], predictions: Vec<Prediction>) -> Result<(), Failure> {
     let mut files = Predictions::new(folder)?;
     for (log, Prediction { before, after }) in logs.iter().zip(predictions) {
         files.write(&log.recording, [("before", before), ("after", after)])?;

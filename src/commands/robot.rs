@@ -1,6 +1,6 @@
 //! `<ROBOT>`: the name of a built-in robot, or the path of a description.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use idim::codegen::{Robot, builder};
 use idim::interpreted::Interpreter;
@@ -51,4 +51,60 @@ pub fn model(argument: &str) -> Result<Box<dyn IdentificationModel>, Failure> {
         return Ok(Box::new(robot.model));
     }
     Ok(Box::new(Interpreter::new(&derived(argument)?)))
+}
+
+/// A description as it is written: its text, and that of the URDF that it names.
+pub struct Texts {
+    /// By file name, the description first.
+    all: Vec<(String, String)>,
+    /// Where the description lies; none for a built-in robot.
+    pub folder: Option<PathBuf>,
+}
+
+impl Texts {
+    /// The texts of `<ROBOT>`.
+    ///
+    /// # Errors
+    /// [`Failure::UnknownRobot`], [`Failure::Description`].
+    pub fn of(argument: &str) -> Result<Texts, Failure> {
+        if let Some(robot) = built_in(argument) {
+            let own = |(file, text): &(&str, &str)| ((*file).to_owned(), (*text).to_owned());
+            return Ok(Texts {
+                all: robot.texts.iter().map(own).collect(),
+                folder: None,
+            });
+        }
+        if !is_path(argument) {
+            return Err(unknown(argument));
+        }
+        let path = Path::new(argument);
+        Ok(Texts {
+            all: builder::read(path)?.texts,
+            folder: Some(path.parent().unwrap_or(Path::new("")).to_owned()),
+        })
+    }
+
+    /// File name and text of the description.
+    pub fn description(&self) -> (&str, &str) {
+        let first = self.all.first();
+        first.map_or(("", ""), |(file, text)| (file, text))
+    }
+
+    /// Whether the description is a TOML, rather than a bare URDF.
+    pub fn is_toml(&self) -> bool {
+        !self
+            .description()
+            .1
+            .trim_start_matches('\u{feff}')
+            .trim_start()
+            .starts_with('<')
+    }
+
+    /// Path and text of the URDF, if there is one.
+    pub fn urdf(&self) -> Option<&(String, String)> {
+        match self.is_toml() {
+            true => self.all.get(1),
+            false => self.all.first(),
+        }
+    }
 }

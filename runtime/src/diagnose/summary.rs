@@ -9,8 +9,8 @@ use super::state::{Bench, Effect, State};
 use super::stepwise::{Named, Outcome};
 use super::{Log, proof, verdict};
 use crate::report::{
-    Alternative, Change, Diagnosis, EffectParameter, FoundEffect, Gap, Located, RejectedEffect,
-    Verdict,
+    Alternative, Change, Diagnosis, EffectParameter, Estimated, FoundEffect, Gap, Located,
+    Refitted, RejectedEffect, Verdict,
 };
 
 /// Puts an outcome into a [`Diagnosis`].
@@ -50,8 +50,33 @@ pub(super) fn diagnosis(
             simulation: None,
             on: place(on, proof.is_some(), validate.len()),
         },
+        parameters: refitted(bench, before, &outcome.state),
         warnings: warnings(train, validate),
     }
+}
+
+/// The model's own parameters in two states.
+fn refitted(bench: &Bench<'_>, before: &State, after: &State) -> Vec<Refitted> {
+    let columns = bench.model.columns();
+    let estimated = |state: &State| -> Vec<Estimated> {
+        let more: usize = state.effects.iter().map(|effect| effect.values.len()).sum();
+        let sigmas = state.system.sigmas(columns.len() + more);
+        let values = state.parameters.iter().zip(sigmas);
+        values
+            .map(|(&value, sigma)| Estimated { value, sigma })
+            .collect()
+    };
+    let pairs = estimated(before).into_iter().zip(estimated(after));
+    columns
+        .iter()
+        .zip(pairs)
+        .map(|(column, (before, after))| Refitted {
+            name: column.name.to_string(),
+            unit: column.unit.to_string(),
+            before,
+            after,
+        })
+        .collect()
 }
 
 /// What the gap was measured on.

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::table::significant;
-use super::{Diagnosis, FoundEffect, Verdict};
+use super::{Diagnosis, EffectParameter, FoundEffect, Verdict};
 
 /// Renders a diagnosis: the verdict, each effect with its parameters and how sure it is, where the
 /// gap is, how it shrinks, what was rejected. A function of the value alone.
@@ -48,17 +48,8 @@ fn named(effect: &FoundEffect) -> String {
         "{}{place}: {}\n  torque {}\n",
         effect.effect, effect.meaning, effect.formula
     );
-    for parameter in &effect.parameters {
-        let sigma = parameter.sigma.map_or_else(
-            || " (not determined)".to_owned(),
-            |sigma| format!(" +- {}", significant(sigma, 2)),
-        );
-        let value = significant(parameter.value, 4);
-        let _ = writeln!(
-            text,
-            "  {} = {value}{sigma} {}",
-            parameter.name, parameter.unit
-        );
+    for found in &effect.parameters {
+        let _ = writeln!(text, "  {}", parameter(found));
     }
     for (name, value) in &effect.shape {
         let _ = writeln!(text, "  {name} = {}", significant(*value, 4));
@@ -92,7 +83,19 @@ fn named(effect: &FoundEffect) -> String {
     text
 }
 
-fn place(joint: Option<&str>, joints: &[usize]) -> String {
+/// A parameter of an effect in words: `FST3 = 1.204 +- 0.031 N m`.
+pub fn parameter(found: &EffectParameter) -> String {
+    let sigma = found.sigma.map_or_else(
+        || " (not determined)".to_owned(),
+        |sigma| format!(" +- {}", significant(sigma, 2)),
+    );
+    let value = significant(found.value, 4);
+    format!("{} = {value}{sigma} {}", found.name, found.unit)
+}
+
+/// Where an effect acts, in words, to follow its name: ` on joint 3 (elbow)`; nothing for the whole
+/// robot.
+pub fn place(joint: Option<&str>, joints: &[usize]) -> String {
     match (joint, joints) {
         (Some(name), [number]) => format!(" on joint {number} ({name})"),
         (_, []) => String::new(),

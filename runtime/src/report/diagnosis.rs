@@ -35,8 +35,32 @@ pub struct Diagnosis {
     pub located: Vec<Located>,
     /// The gap before and after.
     pub gap: Gap,
+    /// The parameters of the model, fitted without and with the effects.
+    pub parameters: Vec<Refitted>,
     /// What is to be said about the logs.
     pub warnings: Vec<String>,
+}
+
+/// A parameter of the model, fitted without and with the effects that were found.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Refitted {
+    /// Name, such as `ZZR1`.
+    pub name: String,
+    /// SI unit.
+    pub unit: String,
+    /// Without them.
+    pub before: Estimated,
+    /// With them.
+    pub after: Estimated,
+}
+
+/// A value and how far it may be off.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Estimated {
+    /// Value, SI.
+    pub value: f64,
+    /// Standard deviation under coloured noise; `None` where the log does not determine it.
+    pub sigma: Option<f64>,
 }
 
 /// A parameter of an effect.

@@ -16,10 +16,10 @@ mod table;
 mod terminal;
 mod thin;
 
-pub use diagnosed::diagnosed;
+pub use diagnosed::{diagnosed, parameter, place};
 pub use diagnosis::{
-    Alternative, Change, Diagnosis, EffectParameter, FoundEffect, Gap, Located, RejectedEffect,
-    Rms, Verdict,
+    Alternative, Change, Diagnosis, EffectParameter, Estimated, FoundEffect, Gap, Located,
+    Refitted, RejectedEffect, Rms, Verdict,
 };
 pub use gains::{DriveGains, GainFactor, terminal as gains_terminal};
 pub use html::html;

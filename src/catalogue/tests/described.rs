@@ -1,8 +1,12 @@
 //! Named effects as descriptions have them.
 
+use idim_codegen::base::BaseParameter;
 use idim_codegen::builder;
 use idim_codegen::robot::Output;
-use idim_runtime::diagnose::Catalogue;
+use idim_runtime::diagnose::{Catalogue, TorqueColumn};
+use idim_runtime::report::{
+    Change, Diagnosis, EffectParameter, Estimated, Fit, FoundEffect, Gap, Refitted, Verdict,
+};
 
 use super::arm::{Course, PLAIN};
 use crate::catalogue::{Effects, toml};
@@ -57,4 +61,125 @@ fn what_is_written_is_read_back_and_has_the_columns_of_the_catalogue() {
         "presliding",
     ];
     assert_eq!(names, expected);
+}
+
+/// A diagnosis that found one effect on given joints.
+fn diagnosis(robot: &idim_codegen::Robot, effect: FoundEffect) -> Diagnosis {
+    let estimated = |value: f64| Estimated { value, sigma: None };
+    let refitted = |(place, parameter): (usize, &BaseParameter)| Refitted {
+        name: parameter.name.clone(),
+        unit: parameter.unit.clone(),
+        before: estimated(0.0),
+        after: estimated(1.0 + place as f64),
+    };
+    let fit = || Fit {
+        total_pct: 0.0,
+        joints: Vec::new(),
+    };
+    Diagnosis {
+        robot: "probe".into(),
+        verdict: Verdict::Named,
+        effects: vec![effect],
+        rejected: Vec::new(),
+        located: Vec::new(),
+        gap: Gap {
+            torque: Change {
+                before: fit(),
+                after: fit(),
+            },
+            simulation: None,
+            on: String::new(),
+        },
+        parameters: robot
+            .base
+            .parameters
+            .iter()
+            .enumerate()
+            .map(refitted)
+            .collect(),
+        warnings: Vec::new(),
+    }
+}
+
+#[test]
+fn what_is_found_is_written_with_its_values_or_said_to_belong_elsewhere() {
+    let robot = PLAIN.robot();
+    let effects = Effects::new(&robot);
+    let course = Course::of(&robot);
+    let mut elsewhere = Vec::new();
+    for hypothesis in effects.hypotheses(&course.signals()) {
+        let entry = &effects.entries()[hypothesis.entry];
+        let shape = &hypothesis.grid[0];
+        let made = effects.columns(&hypothesis, shape, &course.signals());
+        let parameter = |column: &TorqueColumn| EffectParameter {
+            name: column.name.clone(),
+            unit: column.unit.into(),
+            value: 0.25,
+            sigma: None,
+        };
+        let names = entry.shape.iter().map(|(name, _)| (*name).to_owned());
+        let found = diagnosis(
+            &robot,
+            FoundEffect {
+                effect: entry.name.into(),
+                joint: None,
+                joints: hypothesis.joints.iter().map(|joint| joint + 1).collect(),
+                meaning: String::new(),
+                formula: String::new(),
+                parameters: made.iter().map(parameter).collect(),
+                shape: names.zip(shape.iter().copied()).collect(),
+                p_value: 0.0,
+                gain_pct: 0.0,
+                alternatives: Vec::new(),
+                experiment: String::new(),
+            },
+        );
+        let extension = effects.extension(&found).unwrap();
+        assert_eq!(
+            extension.specs,
+            effects.described(&hypothesis, shape),
+            "{}",
+            entry.name
+        );
+        if let Some((_, belongs)) = extension.elsewhere.first() {
+            assert!(!belongs.is_empty());
+            elsewhere.push(entry.name);
+            continue;
+        }
+        let columns = extension.robot.base.parameters.iter();
+        for (column, value) in columns.zip(&extension.parameters) {
+            let own = robot
+                .base
+                .parameters
+                .iter()
+                .position(|p| p.name == column.name);
+            let more = made
+                .iter()
+                .filter(|c| column.relation.iter().any(|(_, n)| *n == c.name));
+            let expected = own.map_or(0.0, |place| 1.0 + place as f64) + 0.25 * more.count() as f64;
+            assert!(
+                (value - expected).abs() < 1e-12,
+                "{} {}",
+                entry.name,
+                column.name
+            );
+        }
+    }
+    elsewhere.dedup();
+    let expected = [
+        "payload",
+        "base_tilt",
+        "external_force",
+        "load_dependent_friction",
+        "drive_gain",
+        "drive_saturation",
+        "drive_dead_zone",
+        "time_shift",
+        "link_length",
+        "encoder_eccentricity",
+        "friction_drift",
+        "joint_elasticity",
+        "backlash",
+    ];
+    assert_eq!(elsewhere, expected);
 }
