@@ -128,6 +128,7 @@ fn diagnose(folder: &Path, robot: &str, write: &str) -> String {
         .current_dir(folder)
         .args(["diagnose", robot, "train.csv", "--validate", "valid.csv"])
         .args(["--write", write, "--predictions", "predicted"])
+        .args(["--html", "page.html"])
         .output()
         .unwrap();
     let complaint = String::from_utf8_lossy(&output.stderr);
@@ -211,6 +212,14 @@ fn a_written_table_has_the_effect_and_predicts_what_the_diagnosis_predicts() {
     );
     let largest = difference(folder.path(), &written);
     assert!(largest < 1e-10, "{largest}");
+    let page = std::fs::read_to_string(folder.path().join("page.html")).unwrap();
+    assert!(page.contains("<title>arm: torque ripple on joint 2 (elbow)</title>"));
+    assert!(
+        page.contains("position of elbow, rad"),
+        "the variable that explains it"
+    );
+    assert!(page.matches("class=\"curve after residual\"").count() == 2);
+    assert!(page.len() < 600_000, "{}", page.len());
 }
 
 #[test]

@@ -8,7 +8,7 @@ use idim::codegen::base::BaseError;
 use idim::runtime::diagnose::{Log, Options, Prediction, diagnose};
 use idim::runtime::log::{self, LogSpec, ReadOptions};
 use idim::runtime::model::IdentificationModel;
-use idim::runtime::report::diagnosed;
+use idim::runtime::report::{diagnosed, diagnosis_html};
 
 mod write;
 
@@ -44,6 +44,10 @@ pub struct Arguments {
     /// Log companion, instead of the .toml beside each log.
     #[arg(long, value_name = "FILE")]
     map: Option<PathBuf>,
+    /// Write a page with where the gap is, what was found, and the gap before and after; `-` for
+    /// standard output.
+    #[arg(long, value_name = "FILE")]
+    html: Option<PathBuf>,
     /// Write the result as JSON; `-` for standard output.
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
@@ -72,15 +76,17 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let options = Options {
         fq_hz: arguments.fq,
         nd: arguments.nd,
+        draw: arguments.html.is_some(),
     };
     let catalogue = Effects::new(&robot);
-    let (diagnosis, predictions) = diagnose(
+    let (mut diagnosis, predictions) = diagnose(
         model.as_ref(),
         &catalogue,
         (&train, &validate),
         &options,
         &spinner,
     )?;
+    diagnosis.command = Some(output::command_line());
     if let Some(folder) = &arguments.predictions {
         predicted(folder, &validate, predictions)?;
     }
@@ -93,10 +99,13 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         text += &write::summary(path, &diagnosis, &extension);
     }
     spinner.finish();
+    if let Some(path) = &arguments.html {
+        output::text(path, &diagnosis_html(&diagnosis))?;
+    }
     if let Some(path) = &arguments.json {
         output::json(path, &diagnosis)?;
     }
-    let files = [&arguments.json, &arguments.write];
+    let files = [&arguments.html, &arguments.json, &arguments.write];
     if arguments.quiet
         || files
             .iter()

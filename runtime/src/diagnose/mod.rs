@@ -14,6 +14,7 @@ mod linear;
 mod noise;
 mod null;
 mod options;
+mod picture;
 mod proof;
 mod repeats;
 mod rest;
@@ -37,6 +38,7 @@ use joined::Joined;
 use null::{Null, Prior};
 use state::{Bench, State};
 use stepwise::Stepwise;
+use summary::Asked;
 use track::Track;
 
 /// Cut-off of the prefilter, Hz, and rate of the rows, Hz, where the robot does not say.
@@ -126,8 +128,12 @@ pub fn diagnose(
             after: bench.torque(&outcome.state, track),
         })
         .collect();
-    let logs = (train, validate);
-    let diagnosis = summary::diagnosis(&bench, &null, (&before, &outcome), proof.as_ref(), logs);
+    let asked = Asked {
+        logs: (train, validate),
+        filtering: &filtering,
+        draw: options.draw,
+    };
+    let diagnosis = summary::diagnosis(&bench, &null, (&before, &outcome), proof.as_ref(), &asked);
     Ok((diagnosis, predictions))
 }
 

@@ -12,6 +12,8 @@ pub struct Options {
     pub fq_hz: Option<f64>,
     /// Decimation ratio n_d.
     pub nd: Option<usize>,
+    /// Whether the curves of [`crate::report::Pictures`] are wanted.
+    pub draw: bool,
 }
 
 /// A log with what lies beside it.

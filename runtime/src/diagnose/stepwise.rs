@@ -63,11 +63,23 @@ pub(super) struct Named {
     pub rivals: Vec<Rival>,
 }
 
+/// How a hypothesis stood in a step.
+#[derive(Clone, Debug)]
+pub(super) struct Ranked {
+    pub step: usize,
+    pub number: usize,
+    pub gain: f64,
+    pub margin: f64,
+    pub p_value: f64,
+}
+
 /// What the search ends with.
 pub(super) struct Outcome {
     pub state: State,
     pub named: Vec<Named>,
     pub refused: Vec<Refused>,
+    /// What came nearest in each step, best first.
+    pub ranked: Vec<Ranked>,
 }
 
 /// The search and what it has found so far.
@@ -78,6 +90,7 @@ pub(super) struct Stepwise<'a> {
     fixed: Vec<Candidate>,
     dependent: Vec<usize>,
     refused: Vec<Refused>,
+    ranked: Vec<Ranked>,
 }
 
 impl<'a> Stepwise<'a> {
@@ -92,6 +105,7 @@ impl<'a> Stepwise<'a> {
             confirm,
             dependent,
             refused: Vec::new(),
+            ranked: Vec::new(),
         }
     }
 
@@ -119,6 +133,7 @@ impl<'a> Stepwise<'a> {
             state,
             named,
             refused: self.refused,
+            ranked: self.ranked,
         }
     }
 
@@ -167,8 +182,9 @@ impl<'a> Stepwise<'a> {
         } else {
             UNCONFIRMED
         };
-        open.retain(|contender| contender.margin > least);
         open.sort_by(|a, b| b.margin.total_cmp(&a.margin));
+        self.rank(&open, named.len());
+        open.retain(|contender| contender.margin > least);
         let mut plausible = Vec::new();
         for contender in open {
             match self.implausible(&contender) {
@@ -195,6 +211,20 @@ impl<'a> Stepwise<'a> {
             return Some((next, found));
         }
         None
+    }
+
+    /// Notes what came nearest in a step; a step that is gone through again is noted anew.
+    fn rank(&mut self, contenders: &[Contender], step: usize) {
+        self.ranked.retain(|ranked| ranked.step < step);
+        let noted = contenders.iter().map(|contender| Ranked {
+            step,
+            number: contender.candidate.number,
+            gain: contender.gain.square,
+            margin: contender.margin,
+            p_value: self.p_value(contender),
+        });
+        let noted: Vec<Ranked> = noted.collect();
+        self.ranked.extend(noted);
     }
 
     fn refuse(&mut self, number: usize, why: String) {
@@ -360,7 +390,10 @@ impl<'a> Stepwise<'a> {
             if !better {
                 continue;
             }
+            // What came nearest is that of the search forward.
+            let noted = std::mem::take(&mut self.ranked);
             let chosen = self.choose(ranking, &without, &others, &along);
+            self.ranked = noted;
             let Some((next, found)) = chosen.filter(|(_, found)| found.number != own.number) else {
                 continue;
             };

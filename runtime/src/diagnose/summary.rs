@@ -5,13 +5,24 @@ use std::collections::BTreeMap;
 use super::catalogue::Hypothesis;
 use super::joined::Joined;
 use super::null::Null;
+use super::picture::{self, Drawn};
 use super::state::{Bench, Effect, State};
 use super::stepwise::{Named, Outcome};
 use super::{Log, proof, verdict};
+use crate::observe::Filtering;
 use crate::report::{
     Alternative, Change, Diagnosis, EffectParameter, Estimated, FoundEffect, Gap, Located,
-    Refitted, RejectedEffect, Verdict,
+    RankedEffect, Refitted, RejectedEffect, Verdict,
 };
+
+/// What was asked.
+pub(super) struct Asked<'a> {
+    /// To fit on, and of other motions.
+    pub logs: (&'a [Log], &'a [Log]),
+    pub filtering: &'a Filtering,
+    /// Whether curves are wanted.
+    pub draw: bool,
+}
 
 /// Puts an outcome into a [`Diagnosis`].
 pub(super) fn diagnosis(
@@ -19,8 +30,9 @@ pub(super) fn diagnosis(
     null: &Null,
     (before, outcome): (&State, &Outcome),
     proof: Option<&Joined>,
-    (train, validate): (&[Log], &[Log]),
+    asked: &Asked<'_>,
 ) -> Diagnosis {
+    let (train, validate) = asked.logs;
     let lacks = verdict::lacks(bench, null, before);
     let left = verdict::lacks(bench, null, &outcome.state);
     let verdict = match outcome.named.is_empty() {
@@ -29,17 +41,34 @@ pub(super) fn diagnosis(
         false if verdict::closed(&lacks, &left) => Verdict::Named,
         false => Verdict::Unknown,
     };
-    let located = verdict::located(bench, &lacks, before).into_iter();
-    let located = located.map(|(joint, unexplained_pct, varies_with)| Located {
-        joint: bench.model.joints()[joint].name.to_string(),
-        unexplained_pct,
-        varies_with: varies_with.into_iter().map(str::to_owned).collect(),
-    });
+    let located = verdict::located(bench, &lacks, before);
+    let lacking: Vec<usize> = match verdict {
+        Verdict::Unknown => located.iter().map(|(joint, ..)| *joint).collect(),
+        _ => Vec::new(),
+    };
+    let located = located
+        .into_iter()
+        .map(|(joint, unexplained_pct, varies_with)| Located {
+            joint: bench.model.joints()[joint].name.to_string(),
+            unexplained_pct,
+            varies_with: varies_with.into_iter().map(str::to_owned).collect(),
+        });
     let on = proof.unwrap_or(bench.train);
+    let names = |logs: &[Log]| logs.iter().map(|log| log.recording.name.clone()).collect();
+    let (order, effects) = effects(bench, outcome);
+    let states = (before, &outcome.state);
+    let drawn = Drawn {
+        order: &order,
+        lacking: &lacking,
+    };
     Diagnosis {
         robot: bench.model.name().to_owned(),
+        logs: names(train),
+        validation: names(validate),
+        filter: asked.filtering.clone(),
         verdict,
-        effects: effects(bench, outcome),
+        effects,
+        ranking: ranking(bench, outcome),
         rejected: rejected(bench, outcome),
         located: located.collect(),
         gap: Gap {
@@ -52,6 +81,10 @@ pub(super) fn diagnosis(
         },
         parameters: refitted(bench, before, &outcome.state),
         warnings: warnings(train, validate),
+        command: None,
+        pictures: asked
+            .draw
+            .then(|| picture::pictures(bench, states, &drawn, on)),
     }
 }
 
@@ -94,10 +127,12 @@ fn place(on: &Joined, proven: bool, validation: usize) -> String {
     }
 }
 
-fn effects(bench: &Bench<'_>, outcome: &Outcome) -> Vec<FoundEffect> {
+/// The effects, strongest first, and the place of each in the state.
+fn effects(bench: &Bench<'_>, outcome: &Outcome) -> (Vec<usize>, Vec<FoundEffect>) {
     let all = proof::fit(bench, &outcome.state, bench.train).total_pct;
-    let mut found: Vec<(f64, FoundEffect)> = Vec::new();
-    for (named, effect) in outcome.named.iter().zip(&outcome.state.effects) {
+    let mut found: Vec<(f64, usize, FoundEffect)> = Vec::new();
+    let pairs = outcome.named.iter().zip(&outcome.state.effects);
+    for (place, (named, effect)) in pairs.enumerate() {
         let others = outcome
             .state
             .effects
@@ -111,11 +146,15 @@ fn effects(bench: &Bench<'_>, outcome: &Outcome) -> Vec<FoundEffect> {
         let error = proof::fit(bench, &without, bench.train).total_pct;
         found.push((
             gain,
+            place,
             effect_in_words(bench, named, effect, 100.0 * (1.0 - all / error)),
         ));
     }
     found.sort_by(|a, b| b.0.total_cmp(&a.0));
-    found.into_iter().map(|(_, effect)| effect).collect()
+    found
+        .into_iter()
+        .map(|(_, place, effect)| (place, effect))
+        .unzip()
 }
 
 fn effect_in_words(
@@ -165,6 +204,26 @@ fn effect_in_words(
         alternatives: named.rivals.iter().map(alternative).collect(),
         experiment: entry.experiment.to_owned(),
     }
+}
+
+/// What came nearest in each step.
+fn ranking(bench: &Bench<'_>, outcome: &Outcome) -> Vec<RankedEffect> {
+    let ranked = outcome.ranked.iter();
+    ranked
+        .map(|ranked| {
+            let hypothesis = &bench.hypotheses[ranked.number];
+            let (joint, joints) = joints(bench, hypothesis);
+            RankedEffect {
+                step: ranked.step,
+                effect: bench.catalogue.entries()[hypothesis.entry].name.to_owned(),
+                joint,
+                joints,
+                gain: ranked.gain,
+                margin: ranked.margin,
+                p_value: ranked.p_value,
+            }
+        })
+        .collect()
 }
 
 fn rejected(bench: &Bench<'_>, outcome: &Outcome) -> Vec<RejectedEffect> {

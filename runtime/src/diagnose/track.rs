@@ -132,6 +132,11 @@ impl Track {
         }
     }
 
+    /// Time of a row since the beginning of the log, s.
+    pub fn row_time(&self, row: usize) -> f64 {
+        self.kept.get(row).map_or(0.0, |&sample| self.t[sample])
+    }
+
     /// Signals at the rows.
     pub fn at_rows(&self, series: &[f64]) -> Vec<f64> {
         self.kept.iter().map(|&sample| series[sample]).collect()

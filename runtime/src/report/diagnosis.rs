@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::Fit;
+use super::{Fit, Pictures};
+use crate::observe::Filtering;
 
 /// What a diagnosis comes to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -23,11 +24,19 @@ pub enum Verdict {
 pub struct Diagnosis {
     /// The robot's name.
     pub robot: String,
+    /// Names of the logs that parameters and effects were fitted on.
+    pub logs: Vec<String>,
+    /// Names of the logs of other motions, which confirm and prove.
+    pub validation: Vec<String>,
+    /// The filters.
+    pub filter: Filtering,
     /// What it comes to.
     pub verdict: Verdict,
     /// The effects found, strongest first; with the verdict `unknown` they help and do not
     /// explain.
     pub effects: Vec<FoundEffect>,
+    /// What came nearest in each step of the search, best first.
+    pub ranking: Vec<RankedEffect>,
     /// What was looked at closely and not taken.
     pub rejected: Vec<RejectedEffect>,
     /// The joints whose torque the model without them does not explain.
@@ -39,6 +48,12 @@ pub struct Diagnosis {
     pub parameters: Vec<Refitted>,
     /// What is to be said about the logs.
     pub warnings: Vec<String>,
+    /// The command line that gives this result, if one did.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub command: Option<String>,
+    /// What is drawn; absent unless asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pictures: Option<Pictures>,
 }
 
 /// A parameter of the model, fitted without and with the effects that were found.
@@ -116,6 +131,26 @@ pub struct Alternative {
     pub p_value: f64,
     /// Whether this log tells the two apart.
     pub separable: bool,
+}
+
+/// A hypothesis as it stood in a step of the search.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RankedEffect {
+    /// How many effects the model had by then.
+    pub step: usize,
+    /// Name in the catalogue.
+    pub effect: String,
+    /// Name of the joint; `None` for several or the whole robot.
+    pub joint: Option<String>,
+    /// Joints, counted from 1.
+    pub joints: Vec<usize>,
+    /// By how much the sum of squares falls, in units of the noise's variance.
+    pub gain: f64,
+    /// The same less what so many parameters, and a search among so many hypotheses, gain by
+    /// chance. Below zero nothing is established.
+    pub margin: f64,
+    /// Probability of such a gain by chance, corrected for the number of hypotheses tried.
+    pub p_value: f64,
 }
 
 /// A hypothesis that was not taken.

@@ -10,6 +10,7 @@ mod html;
 mod identification;
 mod instrumented;
 mod payload;
+mod pictures;
 mod prior;
 mod series;
 mod table;
@@ -19,15 +20,16 @@ mod thin;
 pub use diagnosed::{diagnosed, parameter, place};
 pub use diagnosis::{
     Alternative, Change, Diagnosis, EffectParameter, Estimated, FoundEffect, Gap, Located,
-    Refitted, RejectedEffect, Rms, Verdict,
+    RankedEffect, Refitted, RejectedEffect, Rms, Verdict,
 };
 pub use gains::{DriveGains, GainFactor, terminal as gains_terminal};
-pub use html::html;
+pub use html::{diagnosis_html, html};
 pub use identification::{
     Disagreement, Fit, Identification, InstrumentedFit, InstrumentedValue, JointFit, ModelResult,
     ParameterResult, PriorValue, Truth, Validation, WithPrior,
 };
 pub use payload::{LoadParameter, Payload, Physical, terminal as payload_terminal};
+pub use pictures::{GapCurves, Pictures, Signature};
 pub use series::{JointSeries, LogSeries, ModelSeries, Role, Spectrum};
 pub use terminal::terminal;
 pub(crate) use thin::thinned;

@@ -4,9 +4,11 @@ use idim_codegen::base::BaseParameter;
 use idim_codegen::builder;
 use idim_codegen::robot::Output;
 use idim_runtime::diagnose::{Catalogue, TorqueColumn};
+use idim_runtime::observe::Filtering;
 use idim_runtime::report::{
     Change, Diagnosis, EffectParameter, Estimated, Fit, FoundEffect, Gap, Refitted, Verdict,
 };
+use idim_runtime::settings::{Derivatives, Edges, Velocity};
 
 use super::arm::{Course, PLAIN};
 use crate::catalogue::{Effects, toml};
@@ -78,6 +80,12 @@ fn diagnosis(robot: &idim_codegen::Robot, effect: FoundEffect) -> Diagnosis {
     };
     Diagnosis {
         robot: "probe".into(),
+        logs: Vec::new(),
+        validation: Vec::new(),
+        filter: filtering(),
+        ranking: Vec::new(),
+        command: None,
+        pictures: None,
         verdict: Verdict::Named,
         effects: vec![effect],
         rejected: Vec::new(),
@@ -98,6 +106,21 @@ fn diagnosis(robot: &idim_codegen::Robot, effect: FoundEffect) -> Diagnosis {
             .map(refitted)
             .collect(),
         warnings: Vec::new(),
+    }
+}
+
+fn filtering() -> Filtering {
+    Filtering {
+        fq_hz: 50.0,
+        order: 4,
+        nd: 10,
+        trim: 0,
+        border: (0, 0),
+        edges: Edges::Scipy,
+        derivatives: Derivatives::Central,
+        velocity: Velocity::Derived,
+        prefilter_torque: false,
+        chosen: Vec::new(),
     }
 }
 

@@ -7,6 +7,7 @@
 
 mod comparison;
 mod errors;
+mod gap;
 mod markup;
 mod panel;
 mod scale;
@@ -20,6 +21,7 @@ mod whiteness;
 mod words;
 
 use super::{Identification, LogSeries, ModelResult, Role};
+pub use gap::diagnosis_html;
 use markup::{Element, classed, el};
 
 /// Points of all torque curves of a page together: about one megabyte.
@@ -37,16 +39,29 @@ const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; script-src 
 /// Renders an identification as a self-contained page of HTML, a function of the value alone.
 /// Torque curves and spectra are there for the logs in [`Identification::series`].
 pub fn html(identification: &Identification) -> String {
+    page(&summary::title(identification), sections(identification))
+}
+
+/// A page of that title with some parts.
+fn page(title: &str, parts: impl IntoIterator<Item = Element>) -> String {
+    let body = el("body")
+        .child(el("main").children(parts))
+        .child(
+            classed("div", "readout")
+                .attr("id", "readout")
+                .attr("hidden", "hidden"),
+        )
+        .child(el("script").own(include_str!("page.js")));
     let mut page = String::from("<!DOCTYPE html>\n");
     el("html")
         .attr("lang", "en")
-        .child(head(identification))
-        .child(body(identification))
+        .child(head(title))
+        .child(body)
         .write(&mut page);
     page
 }
 
-fn head(id: &Identification) -> Element {
+fn head(title: &str) -> Element {
     let meta = |name: &str, content: &str| el("meta").attr("name", name).attr("content", content);
     el("head")
         .child(el("meta").attr("charset", "utf-8"))
@@ -60,28 +75,24 @@ fn head(id: &Identification) -> Element {
             "generator",
             concat!("idim ", env!("CARGO_PKG_VERSION")),
         ))
-        .child(el("title").text(summary::title(id)))
+        .child(el("title").text(title))
         .child(el("style").own(include_str!("page.css")))
 }
 
-fn body(id: &Identification) -> Element {
-    let main = el("main").child(summary::header(id));
-    let main = match id.models.first() {
-        None => main.child(el("p").text("No model was asked for.")),
-        Some(model) => main
-            .child(first_screen(id, model))
-            .children(torques(id, model))
-            .children(residuals(id))
-            .child(models(id)),
-    };
-    el("body")
-        .child(main.child(provenance(id)))
-        .child(
-            classed("div", "readout")
-                .attr("id", "readout")
-                .attr("hidden", "hidden"),
-        )
-        .child(el("script").own(include_str!("page.js")))
+/// Everything about an identification.
+fn sections(id: &Identification) -> Vec<Element> {
+    let mut all = vec![summary::header(id)];
+    match id.models.first() {
+        None => all.push(el("p").text("No model was asked for.")),
+        Some(model) => {
+            all.push(first_screen(id, model));
+            all.extend(torques(id, model));
+            all.extend(residuals(id));
+            all.push(models(id));
+        }
+    }
+    all.push(provenance(id));
+    all
 }
 
 /// The two questions that everybody asks first.

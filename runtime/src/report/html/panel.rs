@@ -91,6 +91,18 @@ impl Panel {
         self.mark(path.attr("d", d).attr("data-name", &curve.name));
     }
 
+    /// Draws a dot for each value within the frame.
+    pub fn dots(&mut self, class: &str, x: &[f32], y: &[f32]) {
+        let mut d = String::new();
+        let pairs = x.iter().zip(y);
+        let pairs = pairs.map(|(x, y)| (f64::from(*x), f64::from(*y)));
+        for (x, y) in pairs.filter(|(x, y)| self.x.holds(*x) && self.y.holds(*y)) {
+            // Writing to a String does not fail.
+            let _ = write!(d, "M{} {}h0", px(self.x.at(x)), px(self.y.at(y)));
+        }
+        self.mark(classed("path", &format!("dots {class}")).attr("d", d));
+    }
+
     /// Draws a bar from zero to each value.
     pub fn stems(&mut self, curve: &Curve<'_>) {
         let mut d = String::new();

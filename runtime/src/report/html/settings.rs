@@ -2,7 +2,7 @@
 
 use super::markup::{Element, classed, el};
 use super::words::{count, list, number};
-use crate::report::Identification;
+use crate::report::{Diagnosis, Identification};
 use crate::settings::{Derivatives, Edges, Velocity, Weights};
 
 /// A table of the settings, each with a word on what it does.
@@ -35,6 +35,34 @@ pub(super) fn table(id: &Identification) -> Element {
         row("weights", "weights", weights(id).to_owned()),
     ];
     el("table").child(el("tbody").children(body))
+}
+
+/// The logs and filters of a diagnosis.
+pub(super) fn of_diagnosis(diagnosis: &Diagnosis) -> Element {
+    let filter = &diagnosis.filter;
+    let row = |title: &str, value: String| {
+        el("tr")
+            .child(el("th").text(title))
+            .child(el("td").text(value))
+    };
+    let validation = match diagnosis.validation.is_empty() {
+        true => "none".to_owned(),
+        false => diagnosis.validation.join(", "),
+    };
+    let low_pass = match filter.nd {
+        1 => "none, every sample kept".to_owned(),
+        nd => format!("1 sample in {nd} kept"),
+    };
+    let q = format!(
+        "q below {} Hz, Butterworth of order {}, forwards and backwards; central differences",
+        filter.fq_hz, filter.order
+    );
+    el("table").child(el("tbody").children([
+        row("fitted on", diagnosis.logs.join(", ")),
+        row("confirmed and proven on", validation),
+        row("prefilter", q),
+        row("parallel filter of torque and regressor", low_pass),
+    ]))
 }
 
 /// Samples, rate and duration of the training logs.

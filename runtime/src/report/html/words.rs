@@ -21,7 +21,7 @@ pub(super) fn percent(x: f64) -> String {
 /// A value and its 2 sigma, both to the digit where 2 sigma has its second one.
 pub(super) fn plus_minus(value: f64, sigma: f64) -> String {
     let spread = 2.0 * sigma;
-    if !(spread > 0.0 && spread.is_finite()) {
+    if !(spread > 0.0 && spread.is_finite() && value.is_finite()) {
         return number(value, 5);
     }
     let decimals = 1 - spread.log10().floor() as i32;

@@ -1,0 +1,125 @@
+//! A diagnosis as one self-contained page: what is missing, where, how sure that is, and how the
+//! gap shrinks.
+
+mod curves;
+mod evidence;
+mod found;
+mod shifts;
+mod signature;
+#[cfg(test)]
+mod tests;
+mod verdict;
+
+use super::errors;
+use super::markup::{Element, classed, el};
+use super::{figure, page, question, settings};
+use crate::report::{Diagnosis, Verdict};
+
+/// Renders a diagnosis as a self-contained page of HTML, a function of the value alone. Curves are
+/// there if the diagnosis has [`crate::report::Pictures`].
+pub fn diagnosis_html(diagnosis: &Diagnosis) -> String {
+    page(&verdict::title(diagnosis), sections(diagnosis))
+}
+
+/// Everything about a diagnosis.
+pub(super) fn sections(diagnosis: &Diagnosis) -> Vec<Element> {
+    let mut all = vec![verdict::header(diagnosis), first_screen(diagnosis)];
+    all.extend(found::sections(diagnosis));
+    all.extend(curves::torque(diagnosis));
+    all.extend(curves::motion(diagnosis));
+    all.extend(evidence::section(diagnosis));
+    all.push(shifts::section(diagnosis));
+    all.push(provenance(diagnosis));
+    all
+}
+
+/// How large the gap is, and where.
+fn first_screen(diagnosis: &Diagnosis) -> Element {
+    let (before, after) = (&diagnosis.gap.torque.before, &diagnosis.gap.torque.after);
+    let fits = match diagnosis.effects.is_empty() {
+        true => vec![(
+            "training",
+            "the model as it is described".to_owned(),
+            before,
+        )],
+        false => vec![
+            (
+                "before",
+                "before: the model as it is described".to_owned(),
+                before,
+            ),
+            ("held", "after: with what was found".to_owned(), after),
+        ],
+    };
+    let caption = format!(
+        "Rms of measured minus predicted torque, as a share of the rms of the torque, and in \
+         brackets in absolute terms, on {}. {}",
+        verdict::on(diagnosis),
+        match diagnosis.effects.is_empty() {
+            true => "The parameters were refitted on the training logs.",
+            false => {
+                "Orange: the model as it is described, its parameters refitted; blue: refitted \
+                 with what was found."
+            }
+        }
+    );
+    let words = "Torque error of each joint before and after, percent";
+    let gap = question("How large is the gap?", &verdict::gap(diagnosis))
+        .child(figure([errors::fits_side_by_side(&fits, words)], &caption));
+    classed("section", "pair")
+        .child(gap)
+        .child(place(diagnosis))
+}
+
+/// Where the gap is.
+fn place(diagnosis: &Diagnosis) -> Element {
+    let about = question("Where is it?", &verdict::place(diagnosis));
+    if diagnosis.located.is_empty() {
+        return about;
+    }
+    let bar = |joint: &crate::report::Located| {
+        let bar = errors::Bar {
+            class: "before",
+            title: "not explained".to_owned(),
+            value: joint.unexplained_pct,
+            beside: joint.varies_with.join(", "),
+        };
+        (joint.joint.clone(), vec![bar])
+    };
+    let groups: Vec<_> = diagnosis.located.iter().map(bar).collect();
+    let axis = "share of the residual\u{2019}s variance that is no noise, %";
+    let words = "What of the residual of each joint is no noise";
+    let caption = "Of the model as it is described, on the training logs; beside each bar what the \
+                   unexplained part varies with, the strongest first. Noise is what does not \
+                   repeat from one period of the motion to the next, or, where nothing repeats, \
+                   what a generic model of the joint leaves.";
+    about.child(figure(
+        [errors::grouped(&groups, errors::NAMES, axis, words)],
+        caption,
+    ))
+}
+
+/// Warnings, filters, and the command lines.
+fn provenance(diagnosis: &Diagnosis) -> Element {
+    let warnings = match diagnosis.warnings.is_empty() {
+        true => el("p").text("None."),
+        false => el("ul").children(diagnosis.warnings.iter().map(|text| el("li").text(text))),
+    };
+    let section = el("section")
+        .child(el("h2").attr("id", "warnings").text("Warnings"))
+        .child(warnings)
+        .child(el("h2").text("Logs and filters"))
+        .child(classed("div", "wide").child(settings::of_diagnosis(diagnosis)));
+    let Some(command) = &diagnosis.command else {
+        return section;
+    };
+    let mut commands = command.clone();
+    if diagnosis.verdict != Verdict::Nothing && !command.contains(" --write ") {
+        commands += "\n# the same, and the description with what was found:\n";
+        commands += command;
+        commands += " --write found.toml";
+    }
+    section
+        .child(el("h2").text("The command that gives this page"))
+        .child(el("pre").child(el("code").text(commands)))
+}
