@@ -3,6 +3,7 @@
 use super::contact::Contact;
 use super::dynamics::Dynamics;
 use super::error::SimulateError;
+use super::influence::Moment;
 use super::integrate::{DORMAND_PRINCE, Integrator, RK4, Torque, bounded};
 use super::options::{Method, State};
 
@@ -21,28 +22,31 @@ pub(super) struct Simulator<'a> {
     integrator: Integrator,
     method: Method,
     contacts: Vec<Contact>,
-    /// `[q, qd]` now, and after a trial step.
+    /// `[q, qd]` and presliding states now, and after a trial step.
     state: Vec<f64>,
     next: Vec<f64>,
     tau: Vec<f64>,
     qdd: Vec<f64>,
     /// Next step of the variable-step method, s.
     step: f64,
+    /// Time and velocities at the sample before.
+    before: Option<(f64, Vec<f64>)>,
 }
 
 impl<'a> Simulator<'a> {
     pub(super) fn new(dynamics: Dynamics<'a>, method: Method, start: &State) -> Simulator<'a> {
-        let n = dynamics.joints();
+        let (n, slips) = (dynamics.joints(), dynamics.model.presliding().len());
         let tableau = match method {
             Method::Fixed { .. } => &RK4,
             Method::Adaptive { .. } => &DORMAND_PRINCE,
         };
         Simulator {
-            integrator: Integrator::new(tableau, n),
+            integrator: Integrator::new(tableau, n, slips),
             method,
             contacts: vec![Contact::Sticks; dynamics.surfaces.len()],
-            state: [start.q.as_slice(), start.qd.as_slice()].concat(),
-            next: vec![0.0; 2 * n],
+            state: [start.q.as_slice(), &start.qd, &vec![0.0; slips]].concat(),
+            next: vec![0.0; 2 * n + slips],
+            before: None,
             tau: vec![0.0; n],
             qdd: vec![0.0; n],
             step: 1e-3,
@@ -57,7 +61,31 @@ impl<'a> Simulator<'a> {
 
     /// Present velocities.
     pub(super) fn qd(&self) -> &[f64] {
-        &self.state[self.tau.len()..]
+        let n = self.tau.len();
+        &self.state[n..2 * n]
+    }
+
+    /// Tells everything that acts on the robot that a sample begins.
+    pub(super) fn begin(&mut self, t: f64) {
+        let n = self.tau.len();
+        let (q, qd) = (&self.state[..n], &self.state[n..2 * n]);
+        let qdd = match &self.before {
+            Some((then, last)) => {
+                let pairs = qd.iter().zip(last);
+                pairs.map(|(qd, last)| (qd - last) / (t - then)).collect()
+            }
+            None => vec![0.0; n],
+        };
+        let moment = Moment {
+            t,
+            q,
+            qd,
+            qdd: &qdd,
+        };
+        for influence in &mut self.dynamics.influences {
+            influence.begin(&moment, &mut self.dynamics.parameters);
+        }
+        self.before = Some((t, qd.to_vec()));
     }
 
     /// Moves from time `from` to `to` under a torque that is smooth in between.
@@ -135,15 +163,21 @@ impl<'a> Simulator<'a> {
 
     fn settle(&mut self, torque: Torque<'_>, t: f64) -> Result<(), SimulateError> {
         torque(t, &mut self.tau);
-        let (q, qd) = self.state.split_at_mut(self.tau.len());
+        let n = self.tau.len();
+        let (q, rest) = self.state.split_at_mut(n);
+        let (qd, slip) = rest.split_at_mut(n);
+        self.dynamics.deflect(t, slip);
         self.dynamics.settle(&mut self.contacts, q, qd, &self.tau)
     }
 
     /// How far the trial state is from an event; negative beyond it.
     fn margin(&mut self, torque: Torque<'_>, t: f64) -> Result<f64, SimulateError> {
-        let (q, qd) = self.next.split_at(self.tau.len());
+        let n = self.tau.len();
+        let (q, rest) = self.next.split_at(n);
+        let (qd, slip) = rest.split_at(n);
         if self.contacts.contains(&Contact::Sticks) {
             torque(t, &mut self.tau);
+            self.dynamics.deflect(t, slip);
             self.dynamics
                 .accelerate(&self.contacts, q, qd, &self.tau, &mut self.qdd)?;
         }

@@ -5,6 +5,7 @@ use super::controller::Regulator;
 use super::dynamics::{Dynamics, check_joints};
 use super::error::SimulateError;
 use super::options::{Grid, Options, State};
+use super::plant::{Driving, Encoder, Plant};
 use super::result::Simulation;
 use super::trajectory::Trajectory;
 use crate::log::{Controller, Reference};
@@ -26,6 +27,17 @@ pub struct ClosedLoop<'a> {
     pub start: Option<&'a State>,
 }
 
+/// What a controlled robot does and what its controller knows of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Measured {
+    /// The true motion of every joint of the plant's model, and the torque at it.
+    pub motion: Simulation,
+    /// What the encoders read, one series per driven joint, rad or m.
+    pub q: Vec<Vec<f64>>,
+    /// What the controller commands, one series per driven joint, N m or N.
+    pub tau: Vec<Vec<f64>>,
+}
+
 /// Simulates a controlled robot with the np `parameters` of the model.
 ///
 /// The controller of a robot sees its position (quantised by
@@ -45,51 +57,139 @@ pub fn closed_loop(
     plan: &ClosedLoop<'_>,
     options: &Options,
 ) -> Result<Simulation, SimulateError> {
+    let mut plant = Plant::ideal(model, parameters);
+    let encoder = Encoder {
+        resolution: options.encoder_resolution,
+        ..Encoder::default()
+    };
+    plant.encoders.fill(encoder);
+    Ok(controlled(plant, model, plan, options)?.motion)
+}
+
+/// Simulates a plant under the controller of a robot, which knows the `nominal` model and the
+/// plant's driven joints. As [`closed_loop`], with the plant's own encoders; a start is that of all
+/// joints of the plant, and joints without a drive begin at rest in zero.
+///
+/// # Errors
+/// As [`closed_loop`].
+pub fn controlled(
+    mut plant: Plant<'_>,
+    nominal: &dyn IdentificationModel,
+    plan: &ClosedLoop<'_>,
+    options: &Options,
+) -> Result<Measured, SimulateError> {
     options.check()?;
-    check_joints(model, "reference", plan.reference.joints())?;
+    check_joints(nominal, "reference", plan.reference.joints())?;
+    check_plant(&plant, nominal)?;
     let reference = Trajectory::of(plan.reference, &plan.grid)?;
     let control = (plan.controller, &reference);
-    let resolution = options.encoder_resolution;
-    let mut regulator = Regulator::new(model, control, plan.rigid, &plan.grid, resolution)?;
-    let on_reference = State {
-        q: at(&reference.q, 0),
-        qd: at(&reference.qd, 0),
+    let mut regulator = Regulator::new(nominal, control, plan.rigid, &plan.grid)?;
+    let start = match plan.start {
+        Some(start) => start.clone(),
+        None => on_reference(&plant, &reference),
     };
-    let start = plan.start.unwrap_or(&on_reference);
-    check_joints(model, "start", start.q.len())?;
-    check_joints(model, "start", start.qd.len())?;
-    let dynamics = Dynamics::new(model, parameters)?;
-    let mut robot = Simulator::new(dynamics, options.method, start);
-    let mut result = Simulation::new(&plan.grid, model.joints().len());
-    let mut tau = vec![0.0; model.joints().len()];
+    check_joints(plant.model, "start", start.q.len())?;
+    check_joints(plant.model, "start", start.qd.len())?;
+    let mut dynamics = Dynamics::new(plant.model, plant.parameters)?;
+    dynamics.influences = std::mem::take(&mut plant.influences);
+    let mut robot = Simulator::new(dynamics, options.method, &start);
+    let mut driving = Driving::new(&plant);
+    let mut log = Log::new(&plant, &plan.grid);
     for k in 0..plan.grid.len {
-        regulator.torque(k, (robot.q(), robot.qd()), &mut tau);
-        result.push(robot.q(), robot.qd(), &tau);
+        let now = plan.grid.time(k);
+        log.look(&plant, &robot);
+        regulator.torque(k, (&log.q, &log.qd), &mut log.command);
+        driving.command(now, &log.command);
+        log.write(&robot, &driving, now);
         if k + 1 == plan.grid.len {
             break;
         }
-        let (from, to) = (plan.grid.time(k), plan.grid.time(k + 1));
-        robot.advance(&|_, held: &mut [f64]| held.copy_from_slice(&tau), from, to)?;
-        let near =
-            |(q, series): (&f64, &Vec<f64>)| (q - series[k + 1]).abs() <= options.tracking_limit;
-        if let Some(joint) = robot
-            .q()
-            .iter()
-            .zip(&reference.q)
-            .position(|pair| !near(pair))
-        {
-            let joint = model.joints()[joint].name.to_string();
+        robot.begin(now);
+        let torque = |t: f64, tau: &mut [f64]| driving.at(t, tau);
+        robot.advance(&torque, now, plan.grid.time(k + 1))?;
+        let seen = plant.driven.iter().map(|&joint| robot.q()[joint]);
+        let aims = reference.q.iter().map(|series| series[k + 1]);
+        let far =
+            |(q, aim): (f64, f64)| (q - aim).is_nan() || (q - aim).abs() > options.tracking_limit;
+        if let Some(place) = seen.zip(aims).position(far) {
             return Err(SimulateError::Diverged {
-                joint,
+                joint: nominal.joints()[place].name.to_string(),
                 what: "its reference",
-                second: to,
+                second: plan.grid.time(k + 1),
             });
         }
     }
-    Ok(result)
+    Ok(log.measured)
 }
 
-/// All series at one sample.
-fn at(series: &[Vec<f64>], k: usize) -> Vec<f64> {
-    series.iter().map(|values| values[k]).collect()
+/// The log of a controlled robot, with what is seen and commanded at the present sample.
+struct Log {
+    measured: Measured,
+    q: Vec<f64>,
+    qd: Vec<f64>,
+    command: Vec<f64>,
+    tau: Vec<f64>,
+}
+
+impl Log {
+    fn new(plant: &Plant<'_>, grid: &Grid) -> Log {
+        let (joints, driven) = (plant.model.joints().len(), plant.driven.len());
+        let series = || vec![Vec::with_capacity(grid.len); driven];
+        Log {
+            measured: Measured {
+                motion: Simulation::new(grid, joints),
+                q: series(),
+                tau: series(),
+            },
+            q: vec![0.0; driven],
+            qd: vec![0.0; driven],
+            command: vec![0.0; driven],
+            tau: vec![0.0; joints],
+        }
+    }
+
+    /// Reads the encoders; velocities are the true ones.
+    fn look(&mut self, plant: &Plant<'_>, robot: &Simulator<'_>) {
+        for (place, &joint) in plant.driven.iter().enumerate() {
+            self.q[place] = plant.encoders[place].reads(robot.q()[joint]);
+            self.qd[place] = robot.qd()[joint];
+        }
+    }
+
+    fn write(&mut self, robot: &Simulator<'_>, driving: &Driving<'_>, now: f64) {
+        driving.at(now, &mut self.tau);
+        self.measured.motion.push(robot.q(), robot.qd(), &self.tau);
+        for place in 0..self.q.len() {
+            self.measured.q[place].push(self.q[place]);
+            self.measured.tau[place].push(self.command[place]);
+        }
+    }
+}
+
+/// Whether a plant has what the robot that its controller knows has.
+fn check_plant(plant: &Plant<'_>, nominal: &dyn IdentificationModel) -> Result<(), SimulateError> {
+    check_joints(nominal, "plant", plant.driven.len())?;
+    check_joints(nominal, "list of drives", plant.drives.len())?;
+    check_joints(nominal, "list of encoders", plant.encoders.len())?;
+    let highest = plant.driven.iter().map(|joint| joint + 1).max();
+    match highest {
+        Some(joints) if joints > plant.model.joints().len() => {
+            check_joints(plant.model, "list of driven joints", joints)
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Driven joints where the reference begins, all others at rest in zero.
+fn on_reference(plant: &Plant<'_>, reference: &Trajectory) -> State {
+    let joints = plant.model.joints().len();
+    let mut start = State {
+        q: vec![0.0; joints],
+        qd: vec![0.0; joints],
+    };
+    for (place, &joint) in plant.driven.iter().enumerate() {
+        start.q[joint] = reference.q[place][0];
+        start.qd[joint] = reference.qd[place][0];
+    }
+    start
 }

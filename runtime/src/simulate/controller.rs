@@ -16,7 +16,6 @@ pub(super) struct Regulator<'a> {
     reference: &'a Trajectory,
     /// One series per joint, or none.
     feedforward: Vec<Vec<f64>>,
-    resolution: Option<f64>,
     rate_hz: f64,
     /// Share of a new difference in the filtered velocity.
     gain: f64,
@@ -31,7 +30,6 @@ impl<'a> Regulator<'a> {
         (controller, reference): (&'a Controller, &'a Trajectory),
         rigid: &[f64],
         grid: &Grid,
-        resolution: Option<f64>,
     ) -> Result<Regulator<'a>, SimulateError> {
         check_joints(model, "controller", controller.kp.len())?;
         check_joints(model, "controller", controller.kd.len())?;
@@ -47,11 +45,10 @@ impl<'a> Regulator<'a> {
             rate_hz: grid.rate_hz,
             controller,
             reference,
-            resolution,
         })
     }
 
-    /// Torque at sample `k` for the true state of the robot.
+    /// Torque at sample `k` for the positions that the encoders read and the true velocities.
     pub(super) fn torque(&mut self, k: usize, (q, qd): (&[f64], &[f64]), tau: &mut [f64]) {
         let Law::Pd = self.controller.law;
         for joint in 0..tau.len() {
@@ -70,8 +67,7 @@ impl<'a> Regulator<'a> {
     }
 
     /// What the controller takes for position and velocity.
-    fn measure(&mut self, k: usize, joint: usize, (q, qd): (f64, f64)) -> (f64, f64) {
-        let position = self.resolution.map_or(q, |step| (q / step).round() * step);
+    fn measure(&mut self, k: usize, joint: usize, (position, qd): (f64, f64)) -> (f64, f64) {
         if self.controller.velocity_filter_hz.is_none() {
             return (position, qd);
         }

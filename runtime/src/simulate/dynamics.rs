@@ -2,9 +2,10 @@
 
 use super::contact::Contact;
 use super::error::SimulateError;
+use super::influence::Influence;
 use super::lanes::Lanes;
 use super::linear::{add, factor, solve};
-use super::surface::{Surface, find};
+use super::surface::{Surface, find, slips};
 use crate::model::{Entry, IdentificationModel, Output};
 
 /// A robot with its parameters, ready to be accelerated. Nothing is allocated after [`Dynamics::new`]
@@ -38,6 +39,12 @@ pub struct Dynamics<'a> {
     /// Orthonormal directions that all surfaces that stick span, as rows; their number.
     pub(super) basis: Vec<f64>,
     pub(super) rank: usize,
+    /// Time, s, for what depends on it.
+    pub(super) t: f64,
+    /// Presliding states z/zs, one per joint; empty for a model without any.
+    pub(super) slip: Vec<f64>,
+    /// What acts beyond the columns of the model.
+    pub(super) influences: Vec<Box<dyn Influence + 'a>>,
 }
 
 impl<'a> Dynamics<'a> {
@@ -78,6 +85,9 @@ impl<'a> Dynamics<'a> {
             trial: vec![0.0; n],
             basis: vec![0.0; k * n],
             rank: 0,
+            t: 0.0,
+            slip: slips(model),
+            influences: Vec::new(),
             surfaces,
         })
     }
@@ -106,7 +116,7 @@ impl<'a> Dynamics<'a> {
         self.check("position", q)?;
         self.check("velocity", qd)?;
         self.explicit.fill(1, q, qd);
-        self.explicit.run(self.model);
+        self.explicit.run(self.model, &self.slip);
         self.smooth_bias();
         Ok(&self.bias)
     }
@@ -191,7 +201,7 @@ impl<'a> Dynamics<'a> {
         self.trial.fill(0.0);
         self.momentum.fill(n, q, &self.trial);
         (0..n).for_each(|j| self.momentum.set_velocity(j, j, 1.0));
-        self.momentum.run(self.model);
+        self.momentum.run(self.model, &self.slip);
         self.mass.fill(0.0);
         for entry in &self.inertia {
             let parameter = self.parameters[entry.column];

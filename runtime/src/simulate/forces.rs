@@ -25,8 +25,11 @@ impl Dynamics<'_> {
                 }
             }
         }
-        self.explicit.run(self.model);
+        self.explicit.run(self.model, &self.slip);
         self.smooth_bias();
+        for influence in &mut self.influences {
+            influence.torque(self.t, q, qd, &mut self.bias);
+        }
         (0..contacts.len()).for_each(|k| self.friction(k, contacts[k]));
     }
 

@@ -79,7 +79,8 @@ pub(super) static DORMAND_PRINCE: Tableau = Tableau {
 /// Torque of all joints at a time, written into the slice, N m or N.
 pub(super) type Torque<'t> = &'t dyn Fn(f64, &mut [f64]);
 
-/// Buffers of a method for n joints; a state is `[q, qd]`, 2 n values.
+/// Buffers of a method for n joints; a state is `[q, qd]`, 2 n values, and one more for each
+/// joint whose contact yields before it slides.
 #[derive(Debug)]
 pub(super) struct Integrator {
     tableau: &'static Tableau,
@@ -89,11 +90,11 @@ pub(super) struct Integrator {
 }
 
 impl Integrator {
-    pub(super) fn new(tableau: &'static Tableau, joints: usize) -> Self {
+    pub(super) fn new(tableau: &'static Tableau, joints: usize, slips: usize) -> Self {
         Integrator {
             tableau,
-            stages: vec![0.0; tableau.b.len() * 2 * joints],
-            point: vec![0.0; 2 * joints],
+            stages: vec![0.0; tableau.b.len() * (2 * joints + slips)],
+            point: vec![0.0; 2 * joints + slips],
             tau: vec![0.0; joints],
         }
     }
@@ -116,10 +117,13 @@ impl Integrator {
             let time = t + self.tableau.c[stage] * h;
             bounded(dynamics, &self.point, time)?;
             torque(time, &mut self.tau);
-            let (q, qd) = self.point.split_at(n);
+            let (q, rest) = self.point.split_at(n);
+            let (qd, slip) = rest.split_at(n);
             let rate = &mut self.stages[stage * size..][..size];
             rate[..n].copy_from_slice(qd);
-            dynamics.accelerate(contacts, q, qd, &self.tau, &mut rate[n..])?;
+            dynamics.deflect(time, slip);
+            dynamics.accelerate(contacts, q, qd, &self.tau, &mut rate[n..2 * n])?;
+            dynamics.slip_rates(qd, slip, &mut rate[2 * n..]);
         }
         self.point.copy_from_slice(x);
         self.advance(self.tableau.b, h, size);

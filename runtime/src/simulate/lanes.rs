@@ -11,6 +11,7 @@ pub(super) struct Lanes {
     q: Vec<f64>,
     qd: Vec<f64>,
     qdd: Vec<f64>,
+    slip: Vec<f64>,
     signals: Vec<f64>,
 }
 
@@ -26,6 +27,7 @@ impl Lanes {
             q: states(),
             qd: states(),
             qdd: states(),
+            slip: states(),
             signals,
         }
     }
@@ -52,19 +54,33 @@ impl Lanes {
         self.qd[joint * self.len + state] = qd;
     }
 
-    /// Evaluates the output.
-    pub(super) fn run(&mut self, model: &dyn IdentificationModel) {
+    /// Sets the acceleration of all states.
+    pub(super) fn accelerate(&mut self, qdd: &[f64]) {
+        for (joint, qdd) in qdd.iter().enumerate() {
+            self.qdd[joint * self.len..][..self.len].fill(*qdd);
+        }
+    }
+
+    /// Evaluates the output with the presliding states of the joints, or where all slide.
+    pub(super) fn run(&mut self, model: &dyn IdentificationModel, slip: &[f64]) {
         let (len, values) = (self.len, self.joints * self.len);
         let count = model.pattern(self.output).signals;
         if count == 0 || len == 0 {
             return;
         }
+        for (joint, slip) in slip.iter().enumerate() {
+            self.slip[joint * len..][..len].fill(*slip);
+        }
+        let slip = match slip.is_empty() {
+            true => &[][..],
+            false => &self.slip[..values],
+        };
         let states = States {
             len,
             q: &self.q[..values],
             qd: &self.qd[..values],
             qdd: &self.qdd[..values],
-            slip: &[],
+            slip,
         };
         model.evaluate(self.output, &states, &mut self.signals[..count * len]);
     }

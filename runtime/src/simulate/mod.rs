@@ -17,7 +17,15 @@
 //!
 //! [`closed_loop`] runs a log's reference and controller, [`open_loop`] its torque, [`like`]
 //! whichever a log has; [`ideal`] is the torque that the reference itself needs. All are
-//! deterministic. Effects with memory are not simulated here: no column of a model has one.
+//! deterministic.
+//!
+//! **Hidden effects.** [`controlled`] runs a [`Plant`]: drives between command and joint, encoders
+//! between joint and controller, and joints that no drive moves, so that a gear that yields or has
+//! play is a joint of the model with a spring or two stops. What no column can hold is an
+//! [`Influence`]. Static effects are columns of the model, contacts that yield ([`Presliding`]) run
+//! their states along. [`closed_loop`] is the case where nothing is hidden.
+//!
+//! [`Presliding`]: crate::model::Presliding
 
 mod advance;
 mod closed_loop;
@@ -26,6 +34,7 @@ mod controller;
 mod dynamics;
 mod error;
 mod forces;
+mod influence;
 mod integrate;
 mod inverse;
 mod lanes;
@@ -35,21 +44,25 @@ mod open_loop;
 mod options;
 mod parameters;
 mod parting;
+mod plant;
 mod result;
+mod slip;
 mod surface;
 mod trajectory;
 
 #[cfg(test)]
 mod tests;
 
-pub use closed_loop::{ClosedLoop, closed_loop};
+pub use closed_loop::{ClosedLoop, Measured, closed_loop, controlled};
 pub use dynamics::Dynamics;
 pub use error::SimulateError;
+pub use influence::{Disturbance, Drift, Influence, LoadFriction, Moment, Weight};
 pub use inverse::inverse_dynamics;
 pub use like::{ideal, like};
 pub use open_loop::{OpenLoop, free_motion, open_loop};
 pub use options::{Grid, Method, Options, State};
 pub use parameters::{in_order, named_values, rigid_only};
 pub use parting::{Parting, off_controller, off_reference, parting};
+pub use plant::{Drive, Encoder, Plant};
 pub use result::Simulation;
 pub use trajectory::Trajectory;

@@ -108,8 +108,7 @@ pub fn off_controller(
     check_series("position", &recording.q, grid.len)?;
     let reference = Trajectory::of(reference, &grid)?;
     let control = (controller, &reference);
-    // The log's positions went through the encoder already.
-    let mut regulator = Regulator::new(model, control, rigid, &grid, None)?;
+    let mut regulator = Regulator::new(model, control, rigid, &grid)?;
     let derived = |q: &Vec<f64>| central_difference(q, grid.rate_hz);
     let qd: Vec<Vec<f64>> = recording.q.iter().map(derived).collect();
     let mut law = vec![Vec::with_capacity(grid.len); tau.len()];

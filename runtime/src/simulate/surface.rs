@@ -70,6 +70,7 @@ pub(super) fn find(
     let mut owner: Vec<Option<usize>> = vec![None; pattern.signals];
     let mut surfaces = directions(model.joints().len());
     let mut lanes = Lanes::new(model, Output::Explicit, 2);
+    let slip = slips(model);
     for (index, surface) in surfaces.iter().enumerate() {
         for trial in 0..TRIALS {
             let (q, mut qd) = state(surface.direction.len(), trial);
@@ -77,7 +78,7 @@ pub(super) fn find(
             lanes.fill(2, &q, &qd);
             surface.side(&mut lanes, 0, &qd, 1.0);
             surface.side(&mut lanes, 1, &qd, -1.0);
-            lanes.run(model);
+            lanes.run(model, &slip);
             for (signal, owner) in owner.iter_mut().enumerate() {
                 let (plus, minus) = (lanes.signal(signal, 0), lanes.signal(signal, 1));
                 let jumps = (plus - minus).abs() > JUMP * plus.abs().max(1.0);
@@ -100,6 +101,14 @@ pub(super) fn find(
     }
     surfaces.retain(|surface| !surface.entries.is_empty());
     (surfaces, smooth)
+}
+
+/// Presliding states of all joints, none of them deflected; empty for a model that has none.
+pub(super) fn slips(model: &dyn IdentificationModel) -> Vec<f64> {
+    match model.presliding() {
+        [] => Vec::new(),
+        _ => vec![0.0; model.joints().len()],
+    }
 }
 
 /// The directions that are tried: every joint, then sum and difference of every two joints.

@@ -1,0 +1,15 @@
+//! Robots with hidden effects: drawn, simulated, diagnosed, scored.
+
+pub mod draw;
+pub mod files;
+mod hidden;
+mod logs;
+mod machine;
+mod motion;
+mod oracle;
+mod outside;
+mod propose;
+mod random;
+mod robots;
+
+pub use machine::Failure;
