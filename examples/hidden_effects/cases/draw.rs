@@ -86,6 +86,9 @@ const FAINTEST: f64 = 5.0;
 const FAINTEST_OF_TWO: f64 = 9.0;
 const VISIBLE: f64 = 1.7;
 
+/// What is seen better than this many times the least is too easy.
+const MUCH: f64 = 20.0;
+
 /// Attempts at a case; each draws another robot.
 const ATTEMPTS: usize = 25;
 
@@ -103,17 +106,18 @@ pub fn draw(seed: u64, number: usize, only: Option<&str>) -> Result<Case, Failur
             continue;
         };
         // A loop that an effect makes unstable is no log.
-        let stage = match scene.stage(&effects, &mut random) {
-            Ok(stage) => stage,
-            Err(error) => {
-                eprintln!("{error}");
-                continue;
-            }
+        let Ok(stage) = scene.stage(&effects, &mut random) else {
+            continue;
         };
-        if stage.clear(&scene, category)? {
-            return stage.finish(scene, (seed, number), category, &mut random);
+        let seen = stage.seen(&scene, category)?;
+        if (1.0..MUCH).contains(&seen) {
+            return stage.finish(scene, category, number, &mut random);
         }
-        strength *= 1.5;
+        strength *= if seen < 1.0 {
+            1.5
+        } else {
+            random.uniform(0.15, 0.9) * MUCH / seen
+        };
     }
     Err(format!("case {number} of seed {seed}: no robot shows {category:?} {name}").into())
 }
@@ -176,7 +180,7 @@ impl Scene {
         ];
         let own = Machine::new(&individual, &[])?;
         Ok(Scene {
-            controller: controller(&bare, &described.ratings, random)?,
+            controller: controller(&described.ratings, random),
             noise: Noise::draw(&described.ratings, random),
             host: host(&individual, &own, &described.ratings, &motions[0])?,
             described,
@@ -259,25 +263,24 @@ struct Stage {
 }
 
 impl Stage {
-    /// Whether what is hidden can be seen.
-    fn clear(&self, scene: &Scene, category: Category) -> Result<bool, Failure> {
+    /// How well what is hidden can be seen, in units of the least.
+    fn seen(&self, scene: &Scene, category: Category) -> Result<f64, Failure> {
+        let least = |all: Vec<f64>| all.into_iter().fold(f64::INFINITY, f64::min);
         Ok(match category {
-            Category::Nothing => true,
-            Category::One => self.evidence(scene)? >= FAINTEST,
-            Category::Two => {
-                let each = self.evidences(scene)?;
-                each.iter().all(|evidence| *evidence >= FAINTEST_OF_TWO)
-            }
+            Category::Nothing => 1.0,
+            Category::One => self.evidence(scene)? / FAINTEST,
+            Category::Two => least(self.evidences(scene)?) / FAINTEST_OF_TWO,
             Category::Outside => {
                 let null = Oracle::new(&scene.bare, &[]);
                 let predicted = null.predict(&null.fit(&self.train)?, &self.train)?;
                 let errors = rmse(&self.train.tau, &predicted)?;
                 let zero = vec![vec![0.0; self.train.tau[0].len()]; errors.len()];
                 let floor = rmse(&self.train.noise, &zero)?;
-                errors
+                let ratios = errors
                     .iter()
                     .zip(&floor)
-                    .any(|(error, floor)| *error > VISIBLE * floor)
+                    .map(|(error, floor)| error / floor);
+                ratios.fold(0.0, f64::max) / VISIBLE
             }
         })
     }
@@ -316,8 +319,8 @@ impl Stage {
     fn finish(
         self,
         scene: Scene,
-        (_, number): (u64, usize),
         category: Category,
+        number: usize,
         random: &mut Random,
     ) -> Result<Case, Failure> {
         let valid = scene.log(&self.machine, &self.effects, 1, random)?;

@@ -61,27 +61,24 @@ pub struct Simulated {
 }
 
 /// PD control with rigid feedforward for the described robot.
-pub fn controller(
-    nominal: &Machine,
-    ratings: &[Rating],
-    random: &mut Random,
-) -> Result<Controller, Failure> {
-    let centers: Vec<f64> = ratings.iter().map(|rating| rating.center).collect();
-    let inertias = nominal.inertias(&centers)?;
-    let omega = random.uniform(20.0, 28.0);
+pub fn controller(ratings: &[Rating], random: &mut Random) -> Controller {
     let rounded = |x: f64| (x * 1e3).round() * 1e-3;
-    Ok(Controller {
+    // Large drives are tuned to be stiffer, for what they are built for, than those of a wrist.
+    let stiff = |rating: &Rating| if rating.scale > 30.0 { 1.0 } else { 0.55 };
+    let kp: Vec<f64> = ratings
+        .iter()
+        .map(|rating| rounded(rating.scale * stiff(rating) * random.uniform(40.0, 60.0)))
+        .collect();
+    let per_damping = random.uniform(18.0, 22.0);
+    Controller {
         law: Law::Pd,
-        kp: inertias
-            .iter()
-            .map(|m| rounded(m * omega * omega))
-            .collect(),
-        kd: inertias.iter().map(|m| rounded(1.5 * m * omega)).collect(),
+        kd: kp.iter().map(|kp| rounded(kp / per_damping)).collect(),
+        kp,
         feedforward: Feedforward::Rigid,
         velocity_filter_hz: Some(80.0),
         torque_limit: Some(ratings.iter().map(|rating| 4.0 * rating.scale).collect()),
         start: Start::Reference,
-    })
+    }
 }
 
 /// Runs a machine with effects along a motion under the controller of the nominal one.

@@ -235,7 +235,7 @@ pub fn individual(description: &Description, random: &mut Random) -> Description
     for (name, value) in &mut own.parameters {
         *value *= match name.starts_with("IA") {
             true => 1.0 + rotor * random.normal(),
-            false => random.ratio(0.6, 1.7),
+            false => random.ratio(0.7, 1.4),
         };
     }
     own

@@ -41,9 +41,11 @@ fn series(
         cos: Vec::new(),
     };
     for rating in ratings {
+        // How fast the harmonics fade: from lively to smooth.
+        let fade = random.uniform(0.25, 0.9);
         let mut row = || -> Vec<f64> {
             (1..=orders)
-                .map(|h| random.normal() / (1.0 + 8.0 * h as f64 / period).powf(1.3))
+                .map(|h| random.normal() / (1.0 + 8.0 * h as f64 / period).powf(fade))
                 .collect()
         };
         let (mut sin, mut cos) = (row(), row());

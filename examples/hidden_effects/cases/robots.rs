@@ -354,8 +354,8 @@ pub fn describe(kind: &Kind, random: &mut Random) -> Described {
         let number = place + 1;
         let [rotor, viscous, coulomb] = [
             link.rotor * random.ratio(0.8, 1.25),
-            0.07 * link.scale / link.speed * random.ratio(0.6, 1.6),
-            0.05 * link.scale * random.ratio(0.6, 1.6),
+            0.07 * link.scale / link.speed * random.ratio(0.7, 1.4),
+            0.05 * link.scale * random.ratio(0.7, 1.4),
         ];
         urdf += &body(number, link, size, random);
         urdf += &joint(number, link, &parent, (size, viscous, coulomb));
