@@ -44,7 +44,7 @@ impl<'a> Simulator<'a> {
             integrator: Integrator::new(tableau, n, slips),
             method,
             contacts: vec![Contact::Sticks; dynamics.surfaces.len()],
-            state: [start.q.as_slice(), &start.qd, &vec![0.0; slips]].concat(),
+            state: [start.q.as_slice(), &start.qd, &dynamics.sliding(&start.qd)].concat(),
             next: vec![0.0; 2 * n + slips],
             before: None,
             tau: vec![0.0; n],

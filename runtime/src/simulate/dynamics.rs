@@ -144,6 +144,7 @@ impl<'a> Dynamics<'a> {
         }
         let mut contacts = vec![Contact::Sticks; self.surfaces.len()];
         let mut at_rest = qd.to_vec();
+        self.slide(qd);
         self.settle(&mut contacts, q, &mut at_rest, tau)?;
         self.accelerate(&contacts, q, &at_rest, tau, qdd)
     }

@@ -79,23 +79,25 @@ pub(super) static DORMAND_PRINCE: Tableau = Tableau {
 /// Torque of all joints at a time, written into the slice, N m or N.
 pub(super) type Torque<'t> = &'t dyn Fn(f64, &mut [f64]);
 
-/// Buffers of a method for n joints; a state is `[q, qd]`, 2 n values, and one more for each
-/// joint whose contact yields before it slides.
+/// Buffers of a method for n joints; a state is `[q, qd]`, 2 n values, and behind them the slip of
+/// each joint whose contact yields before it slides.
 #[derive(Debug)]
 pub(super) struct Integrator {
     tableau: &'static Tableau,
     stages: Vec<f64>,
     point: Vec<f64>,
     tau: Vec<f64>,
+    slip: Vec<f64>,
 }
 
 impl Integrator {
     pub(super) fn new(tableau: &'static Tableau, joints: usize, slips: usize) -> Self {
         Integrator {
             tableau,
-            stages: vec![0.0; tableau.b.len() * (2 * joints + slips)],
-            point: vec![0.0; 2 * joints + slips],
+            stages: vec![0.0; tableau.b.len() * 2 * joints],
+            point: vec![0.0; 2 * joints],
             tau: vec![0.0; joints],
+            slip: vec![0.0; slips],
         }
     }
 
@@ -108,7 +110,9 @@ impl Integrator {
         x: &[f64],
         next: &mut [f64],
     ) -> Result<(), SimulateError> {
-        let (size, n) = (x.len(), self.tau.len());
+        let n = self.tau.len();
+        let size = 2 * n;
+        let (x, before) = x.split_at(size);
         for stage in 0..self.tableau.b.len() {
             self.point.copy_from_slice(x);
             if stage > 0 {
@@ -117,24 +121,24 @@ impl Integrator {
             let time = t + self.tableau.c[stage] * h;
             bounded(dynamics, &self.point, time)?;
             torque(time, &mut self.tau);
-            let (q, rest) = self.point.split_at(n);
-            let (qd, slip) = rest.split_at(n);
+            let (q, qd) = self.point.split_at(n);
             let rate = &mut self.stages[stage * size..][..size];
             rate[..n].copy_from_slice(qd);
-            dynamics.deflect(time, slip);
-            dynamics.accelerate(contacts, q, qd, &self.tau, &mut rate[n..2 * n])?;
-            dynamics.slip_rates(qd, slip, &mut rate[2 * n..]);
+            dynamics.slipped(before, (&x[..n], q), &mut self.slip);
+            dynamics.deflect(time, &self.slip);
+            dynamics.accelerate(contacts, q, qd, &self.tau, &mut rate[n..])?;
         }
         self.point.copy_from_slice(x);
         self.advance(self.tableau.b, h, size);
         bounded(dynamics, &self.point, t + h)?;
-        next.copy_from_slice(&self.point);
+        next[..size].copy_from_slice(&self.point);
+        dynamics.slipped(before, (&x[..n], &self.point[..n]), &mut next[size..]);
         Ok(())
     }
 
     /// Largest error of the last step in units of the tolerance; 0 without an estimate.
     pub(super) fn error(&self, h: f64, next: &[f64], relative: f64, absolute: f64) -> f64 {
-        let size = next.len();
+        let size = self.point.len();
         let error = |i: usize| -> f64 {
             let terms = self.tableau.error.iter().enumerate();
             let sum: f64 = terms

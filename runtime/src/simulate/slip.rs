@@ -12,12 +12,33 @@ impl Dynamics<'_> {
         }
     }
 
-    /// Their rates by Dahl's equation, \\( \dot z / z_s = (\dot q - |\dot q| z / z_s) / z_s \\), 1/s.
-    pub(super) fn slip_rates(&self, qd: &[f64], slip: &[f64], rates: &mut [f64]) {
-        let contacts = self.model.presliding().iter().zip(slip).zip(rates);
-        for ((contact, z), rate) in contacts {
-            let qd = qd[contact.joint];
-            *rate = (qd - qd.abs() * z) / contact.zs;
+    /// Lets every contact slide.
+    pub(super) fn slide(&mut self, qd: &[f64]) {
+        for contact in self.model.presliding() {
+            self.slip[contact.joint] = side(qd[contact.joint]);
         }
     }
+
+    /// The states where all slide, of joints that move, and undeflected, of those at rest.
+    pub(super) fn sliding(&self, qd: &[f64]) -> Vec<f64> {
+        let contacts = self.model.presliding().iter();
+        contacts.map(|contact| side(qd[contact.joint])).collect()
+    }
+
+    /// The states after a way: \\( dz = dq - |dq| z / z_s \\) (Dahl 1968) depends on the way alone,
+    /// and along one that does not turn round its solution is exact for any step. From the states
+    /// `before` at `from` to those at `to`, positions of all joints.
+    pub(super) fn slipped(&self, before: &[f64], (from, to): (&[f64], &[f64]), after: &mut [f64]) {
+        let contacts = self.model.presliding().iter().zip(before).zip(after);
+        for ((contact, before), after) in contacts {
+            let way = to[contact.joint] - from[contact.joint];
+            let end = side(way);
+            *after = end + (before - end) * (-way.abs() / contact.zs).exp();
+        }
+    }
+}
+
+/// -1, 0 or 1.
+fn side(x: f64) -> f64 {
+    if x == 0.0 { 0.0 } else { x.signum() }
 }
