@@ -1,6 +1,8 @@
 //! The paper's experiment as built-in data: the planar SCARA on successive point-to-point moves,
 //! torque from the dynamic model without noise (Gautier 1996, section 7.2).
 
+pub mod hidden;
+
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::Rng;
 

@@ -150,6 +150,66 @@ fn demo_shows_three_models_and_writes_its_log_and_result() {
 }
 
 #[test]
+fn demo_hides_an_effect_and_finds_it_from_the_files_alone() {
+    let folder = Folder::new();
+    let out = folder.path("demo").display().to_string();
+    let output = idim(&["demo", "--folder", &out]);
+    let text = stdout(&output);
+    assert!(
+        text.contains("one effect is missing, and it explains the gap"),
+        "{text}"
+    );
+    let read = |name: &str| -> Value {
+        let text = std::fs::read_to_string(folder.path(&format!("demo/{name}"))).unwrap();
+        serde_json::from_str(&text).unwrap()
+    };
+    let found = read("diagnosis.json");
+    let effect = &found["effects"][0];
+    assert_eq!(
+        (effect["effect"].as_str(), &effect["joints"][0]),
+        (Some("stribeck"), &1.into())
+    );
+    let (value, sigma) = (
+        &effect["parameters"][0]["value"],
+        &effect["parameters"][0]["sigma"],
+    );
+    let (value, sigma) = (value.as_f64().unwrap(), sigma.as_f64().unwrap());
+    assert!((value - 0.4).abs() < 3.0 * sigma, "{value} +- {sigma}");
+    assert!((effect["shape"]["velocity"].as_f64().unwrap() - 0.2).abs() < 0.01);
+    let total = |when: &str| found["gap"]["torque"][when]["total_pct"].as_f64().unwrap();
+    assert!(total("after") < 0.3 * total("before"));
+    // The command that it prints finds the same, and the written description has the parameter.
+    let log = |name: &str| folder.path(&format!("demo/{name}")).display().to_string();
+    let again = idim(&[
+        "diagnose",
+        "scara",
+        &log("train.csv"),
+        "--validate",
+        &log("valid.csv"),
+        "--fq",
+        "50",
+        "--json",
+        "-",
+    ]);
+    let again: Value = serde_json::from_str(&stdout(&again)).unwrap();
+    assert_eq!(again["effects"], found["effects"]);
+    let written = log("scara_found.toml");
+    let identified = idim(&[
+        "identify",
+        &written,
+        &log("train.csv"),
+        "--fq",
+        "50",
+        "--json",
+        "-",
+    ]);
+    let identified: Value = serde_json::from_str(&stdout(&identified)).unwrap();
+    let parameters = identified["models"][0]["parameters"].as_array().unwrap();
+    let own = parameters.iter().find(|p| p["name"] == "FST1").unwrap();
+    assert!((own["value"].as_f64().unwrap() - 0.4).abs() < 0.03, "{own}");
+}
+
+#[test]
 fn identify_of_a_path_recovers_what_made_the_log_and_predicts_it() {
     let folder = Folder::new();
     let robot = folder.file("slide.toml", SLIDE);

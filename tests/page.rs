@@ -62,6 +62,12 @@ fn demo_writes_a_page_that_knows_the_truth() {
     let page = std::fs::read_to_string(folder.path().join("idim-demo/report.html")).unwrap();
     assert!(page.contains("SCARA") && page.contains("Largest error against the true values"));
     assert_eq!(count(&page, "class=\"truth\""), 8);
+    assert!(page.contains("The model lacks stribeck on joint 1 (shoulder)"));
+    assert!(
+        page.contains("velocity of shoulder, rad/s"),
+        "what explains the residual"
+    );
+    assert!(page.len() < 1_000_000, "{}", page.len());
     let json = std::fs::read_to_string(folder.path().join("idim-demo/result.json")).unwrap();
     assert!(
         !json.contains("\"series\""),

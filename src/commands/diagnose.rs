@@ -3,14 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use idim::catalogue::{Effects, entries};
-use idim::codegen::BuildError;
-use idim::codegen::base::BaseError;
 use idim::runtime::diagnose::{Log, Options, Prediction, diagnose};
 use idim::runtime::log::{self, LogSpec, ReadOptions};
 use idim::runtime::model::IdentificationModel;
 use idim::runtime::report::{diagnosed, diagnosis_html};
 
-mod write;
+pub(super) mod write;
 
 use super::predictions::Predictions;
 use super::progress::Spinner;
@@ -94,7 +92,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(path) = &arguments.write {
         let extension = catalogue
             .extension(&diagnosis)
-            .map_err(|source| not_extended(name, source))?;
+            .map_err(write::not_extended)?;
         write::write(path, &Texts::of(name)?, &diagnosis, &extension)?;
         text += &write::summary(path, &diagnosis, &extension);
     }
@@ -114,13 +112,6 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         return Ok(());
     }
     output::print(&text)
-}
-
-fn not_extended(robot: &str, source: BaseError) -> Failure {
-    Failure::Description(BuildError::Base {
-        file: format!("{robot} with what was found"),
-        source,
-    })
 }
 
 /// The catalogue as text.

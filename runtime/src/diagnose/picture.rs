@@ -215,35 +215,26 @@ fn best(variables: &[Variable], torque: &[f64], weights: &[f64]) -> Option<(usiz
     best
 }
 
-/// Share of the variance of `y` that lies between steps of `x`, less what chance puts there.
+/// Share of the variance of `y` that lies between `count` steps of `x`, less what chance puts
+/// there. Steps hold equally many values and none on both sides of zero, where signs change.
 fn explained((x, count): (&[f64], usize), y: &[f64], weights: &[f64]) -> f64 {
-    let counted: Vec<usize> = (0..y.len()).filter(|&i| weights[i] > 0.0).collect();
-    let low = counted.iter().map(|&i| x[i]).fold(f64::INFINITY, f64::min);
-    let high = counted
-        .iter()
-        .map(|&i| x[i])
-        .fold(f64::NEG_INFINITY, f64::max);
+    let mut counted: Vec<usize> = (0..y.len()).filter(|&i| weights[i] > 0.0).collect();
+    counted.sort_by(|&a, &b| x[a].total_cmp(&x[b]));
     let mean = |of: &[usize]| of.iter().map(|&i| y[i]).sum::<f64>() / of.len().max(1) as f64;
-    let all = mean(&counted);
-    let total: f64 = counted.iter().map(|&i| (y[i] - all).powi(2)).sum();
-    if !(total > 0.0 && high > low) {
+    let square = |of: &[usize]| -> f64 {
+        let mean = mean(of);
+        of.iter().map(|&i| (y[i] - mean).powi(2)).sum()
+    };
+    let (total, many) = (square(&counted), counted.len());
+    if total <= 0.0 || many < 2 * count {
         return 0.0;
     }
-    let step = |i: usize| ((x[i] - low) / (high - low) * count as f64) as usize;
-    let mut steps: Vec<Vec<usize>> = vec![Vec::new(); count + 1];
-    counted
-        .iter()
-        .for_each(|&i| steps[step(i).min(count)].push(i));
-    let filled = steps.iter().filter(|step| !step.is_empty());
-    let within: f64 = filled
-        .clone()
-        .map(|of| {
-            let mean = mean(of);
-            of.iter().map(|&i| (y[i] - mean).powi(2)).sum::<f64>()
-        })
-        .sum();
-    let freedom = counted.len().saturating_sub(filled.count()).max(1) as f64;
-    1.0 - within / total * (counted.len() as f64 - 1.0) / freedom
+    let (below, above) = counted.split_at(counted.partition_point(|&i| x[i] < 0.0));
+    let size = many.div_ceil(count);
+    let steps = || below.chunks(size).chain(above.chunks(size));
+    let within: f64 = steps().map(square).sum();
+    let freedom = many.saturating_sub(steps().count()).max(1) as f64;
+    1.0 - within / total * (many as f64 - 1.0) / freedom
 }
 
 fn weighted_square(values: &[f64], weights: &[f64]) -> f64 {

@@ -23,7 +23,7 @@ pub use diagnosis::{
     RankedEffect, Refitted, RejectedEffect, Rms, Verdict,
 };
 pub use gains::{DriveGains, GainFactor, terminal as gains_terminal};
-pub use html::{diagnosis_html, html};
+pub use html::{diagnosis_html, html, story};
 pub use identification::{
     Disagreement, Fit, Identification, InstrumentedFit, InstrumentedValue, JointFit, ModelResult,
     ParameterResult, PriorValue, Truth, Validation, WithPrior,

@@ -3,6 +3,8 @@
 use std::path::{Component, Path, PathBuf};
 
 use idim::catalogue::{Extension, toml};
+use idim::codegen::BuildError;
+use idim::codegen::base::BaseError;
 use idim::codegen::builder;
 use idim::codegen::describe::identifier::snake_case;
 use idim::runtime::report::{Diagnosis, FoundEffect, Refitted, parameter, place};
@@ -37,6 +39,14 @@ pub fn write(
         output::write_whole(&path, &text)?;
     }
     output::text(path, &text)
+}
+
+/// Why there is no robot with what was found.
+pub fn not_extended(source: BaseError) -> Failure {
+    Failure::Description(BuildError::Base {
+        file: "the description with what was found".into(),
+        source,
+    })
 }
 
 /// What the terminal says of it.
@@ -214,9 +224,9 @@ fn parameters(
     }
     let with = match diagnosis.effects.is_empty() {
         true => "",
-        false => "with the effects above ",
+        false => " with what was found",
     };
-    let mut prefix = format!("{remarks}\n# Fitted {with}on the same logs.\n");
+    let mut prefix = format!("{remarks}\n# Refitted{with}, on the same logs.\n");
     if known {
         prefix += "# [prior] now stands about these values: leave it out where the same logs are \
                    used again.\n";

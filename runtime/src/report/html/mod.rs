@@ -20,7 +20,7 @@ mod trust;
 mod whiteness;
 mod words;
 
-use super::{Identification, LogSeries, ModelResult, Role};
+use super::{Diagnosis, Identification, LogSeries, ModelResult, Role};
 pub use gap::diagnosis_html;
 use markup::{Element, classed, el};
 
@@ -40,6 +40,36 @@ const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; script-src 
 /// Torque curves and spectra are there for the logs in [`Identification::series`].
 pub fn html(identification: &Identification) -> String {
     page(&summary::title(identification), sections(identification))
+}
+
+/// A story of two parts on one page: what is missing, and before it, what is there. `about` are
+/// paragraphs for the top.
+pub fn story(
+    title: &str,
+    about: &[String],
+    diagnosis: &Diagnosis,
+    identification: &Identification,
+) -> String {
+    let link = |to: &str, text: &str| el("a").attr("href", to).text(text);
+    let top = el("header")
+        .child(el("h1").text(title))
+        .children(about.iter().map(|text| classed("p", "answer").text(text)))
+        .child(
+            classed("p", "facts")
+                .text("On this page: ")
+                .child(link("#diagnosis", "what the model is missing"))
+                .text(", ")
+                .child(link("#identification", "the parameters by three models"))
+                .text("."),
+        );
+    let part =
+        |id: &str, sections: Vec<Element>| classed("div", "part").attr("id", id).children(sections);
+    let parts = [
+        top,
+        part("diagnosis", gap::sections(diagnosis)),
+        part("identification", sections(identification)),
+    ];
+    page(title, parts)
 }
 
 /// A page of that title with some parts.

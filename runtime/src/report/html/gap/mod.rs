@@ -106,7 +106,7 @@ fn provenance(diagnosis: &Diagnosis) -> Element {
         false => el("ul").children(diagnosis.warnings.iter().map(|text| el("li").text(text))),
     };
     let section = el("section")
-        .child(el("h2").attr("id", "warnings").text("Warnings"))
+        .child(el("h2").attr("id", "doubts").text("Warnings"))
         .child(warnings)
         .child(el("h2").text("Logs and filters"))
         .child(classed("div", "wide").child(settings::of_diagnosis(diagnosis)));

@@ -44,7 +44,7 @@ pub(super) fn header(diagnosis: &Diagnosis) -> Element {
     };
     let warnings = (!diagnosis.warnings.is_empty()).then(|| {
         let link = el("a")
-            .attr("href", "#warnings")
+            .attr("href", "#doubts")
             .text(count(diagnosis.warnings.len(), "warning"));
         classed("span", "warned").text(" ").child(link)
     });
