@@ -11,6 +11,7 @@ pub use idim_runtime as runtime;
 pub mod catalogue;
 pub mod demo;
 pub mod interpreted;
+pub mod simulated;
 pub mod study;
 
 /// The robots of `robots/`, generated when this crate was built.

@@ -188,11 +188,22 @@ fn demo_hides_an_effect_and_finds_it_from_the_files_alone() {
         &log("valid.csv"),
         "--fq",
         "50",
+        "--predictions",
+        &log("out"),
         "--json",
         "-",
     ]);
     let again: Value = serde_json::from_str(&stdout(&again)).unwrap();
     assert_eq!(again["effects"], found["effects"]);
+    // In closed loop the robot with the effect goes where the log went.
+    assert_eq!(again["gap"]["simulation"], found["gap"]["simulation"]);
+    let shoulder = |when: &str| found["gap"]["simulation"][when]["rms"][0].as_f64().unwrap();
+    assert!(shoulder("after") < 0.2 * shoulder("before"));
+    let file = std::fs::File::open(folder.path("demo/out/valid_after.csv.gz")).unwrap();
+    let mut head = String::new();
+    let mut text = std::io::BufReader::new(flate2::read::GzDecoder::new(file));
+    std::io::BufRead::read_line(&mut text, &mut head).unwrap();
+    assert_eq!(head, "t,tau1,tau2,q1,q2\n");
     let written = log("scara_found.toml");
     let identified = idim(&[
         "identify",

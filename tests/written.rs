@@ -128,7 +128,7 @@ fn diagnose(folder: &Path, robot: &str, write: &str) -> String {
         .current_dir(folder)
         .args(["diagnose", robot, "train.csv", "--validate", "valid.csv"])
         .args(["--write", write, "--predictions", "predicted"])
-        .args(["--html", "page.html"])
+        .args(["--html", "page.html", "--json", "found.json"])
         .output()
         .unwrap();
     let complaint = String::from_utf8_lossy(&output.stderr);
@@ -212,6 +212,11 @@ fn a_written_table_has_the_effect_and_predicts_what_the_diagnosis_predicts() {
     );
     let largest = difference(folder.path(), &written);
     assert!(largest < 1e-10, "{largest}");
+    let json = std::fs::read_to_string(folder.path().join("found.json")).unwrap();
+    assert!(
+        !json.contains("\"simulation\""),
+        "these logs have no controller"
+    );
     let page = std::fs::read_to_string(folder.path().join("page.html")).unwrap();
     assert!(page.contains("<title>arm: torque ripple on joint 2 (elbow)</title>"));
     assert!(

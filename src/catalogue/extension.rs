@@ -10,6 +10,9 @@ use idim_runtime::report::{Diagnosis, FoundEffect};
 
 use super::{CATALOGUE, Effects};
 
+/// The effect that is a part of the last link.
+const PAYLOAD: &str = "payload";
+
 /// A robot with the effects that a diagnosis found.
 #[derive(Debug)]
 pub struct Extension {
@@ -49,7 +52,8 @@ impl Effects {
                 }
             }
             for parameter in &effect.parameters {
-                *standard.entry(parameter.name.clone()).or_default() += parameter.value;
+                let name = self.standard_name(&effect.effect, &parameter.name);
+                *standard.entry(name).or_default() += parameter.value;
             }
         }
         let robot = self.extended(&specs)?;
@@ -62,6 +66,15 @@ impl Effects {
             robot,
             elsewhere,
         })
+    }
+
+    /// The standard parameter that a parameter of an effect is: a body at the tool is part of the
+    /// last link, all others have their own names.
+    fn standard_name(&self, effect: &str, parameter: &str) -> String {
+        match parameter.strip_prefix('P') {
+            Some(own) if effect == PAYLOAD => format!("{own}{}", self.joints()),
+            _ => parameter.to_owned(),
+        }
     }
 
     /// Standard parameters that give the refitted base parameters: each in the one that it is
@@ -102,7 +115,11 @@ impl Effects {
     /// What a description has to say for an effect; `None` if it cannot, or has the same effect on
     /// the same joints with another shape already.
     fn written(&self, hypothesis: &Hypothesis, shape: &[f64]) -> Option<Vec<EffectSpec>> {
-        let kinds = CATALOGUE.get(hypothesis.entry)?.described;
+        let effect = CATALOGUE.get(hypothesis.entry)?;
+        if effect.entry.name == PAYLOAD {
+            return Some(Vec::new());
+        }
+        let kinds = effect.described;
         let specs = self.described(hypothesis, shape);
         let wanted = |kind: &&idim_codegen::catalogue::EffectKind| !kind.shapes().is_empty();
         let shaped = kinds.iter().filter(wanted).count();
@@ -118,10 +135,6 @@ fn same(one: &EffectSpec, other: &EffectSpec) -> bool {
 /// Where an effect belongs that no `[[effect]]` can ask for.
 fn belongs(effect: &str) -> &'static str {
     match effect {
-        "payload" => {
-            "the inertial values of the last link, or a tool of its own; `idim identify --payload` \
-             gives its mass and centre"
-        }
         "base_tilt" => "`gravity`, turned by these angles",
         "external_force" => "nowhere in a description: it is an event of this log",
         "load_dependent_friction" => {

@@ -2,11 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use idim::catalogue::{Effects, entries};
+use idim::catalogue::{Effects, Extension, entries};
 use idim::runtime::diagnose::{Log, Options, Prediction, diagnose};
 use idim::runtime::log::{self, LogSpec, ReadOptions};
 use idim::runtime::model::IdentificationModel;
-use idim::runtime::report::{diagnosed, diagnosis_html};
+use idim::runtime::report::{Diagnosis, diagnosed, diagnosis_html};
+use idim::simulated::{self, Motions};
 
 pub(super) mod write;
 
@@ -85,14 +86,23 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         &spinner,
     )?;
     diagnosis.command = Some(output::command_line());
+    let extension = catalogue
+        .extension(&diagnosis)
+        .map_err(write::not_extended)?;
+    let motions = match arguments.simulates() {
+        true => motions(
+            model.as_ref(),
+            &mut diagnosis,
+            &extension,
+            (&validate, &spinner),
+        ),
+        false => Vec::new(),
+    };
     if let Some(folder) = &arguments.predictions {
-        predicted(folder, &validate, predictions)?;
+        predicted(folder, &validate, predictions, motions)?;
     }
     let mut text = diagnosed(&diagnosis);
     if let Some(path) = &arguments.write {
-        let extension = catalogue
-            .extension(&diagnosis)
-            .map_err(write::not_extended)?;
         write::write(path, &Texts::of(name)?, &diagnosis, &extension)?;
         text += &write::summary(path, &diagnosis, &extension);
     }
@@ -165,11 +175,63 @@ fn read(
     names.iter().map(read).collect()
 }
 
-/// `LOGSTEM_before.csv.gz` and `LOGSTEM_after.csv.gz` of each validation log: t, tau1.. on its rows.
-fn predicted(folder: &Path, logs: &[Log], predictions: Vec<Prediction>) -> Result<(), Failure> {
+impl Arguments {
+    /// Whether motions are simulated: for those who want a file, since it takes longer than all
+    /// the rest.
+    fn simulates(&self) -> bool {
+        self.json.is_some() || self.html.is_some() || self.predictions.is_some()
+    }
+}
+
+/// Simulates the motion of each validation log that has a reference and a controller, and notes
+/// the gap on the last of them.
+pub(super) fn motions(
+    model: &dyn IdentificationModel,
+    diagnosis: &mut Diagnosis,
+    extension: &Extension,
+    (logs, spinner): (&[Log], &Spinner),
+) -> Vec<Option<Motions>> {
+    let mut all = Vec::new();
+    for log in logs {
+        spinner.say(&format!("simulating {}", log.recording.name));
+        let found = simulated::motions(model, diagnosis, extension, log);
+        let found = found.unwrap_or_else(|why| {
+            diagnosis.warnings.push(why.to_string());
+            None
+        });
+        if let Some(motions) = &found {
+            diagnosis.gap.simulation = Some(simulated::gap(log, motions));
+            if let Some(pictures) = &mut diagnosis.pictures {
+                pictures.motion = simulated::curves(model, log, motions);
+            }
+        }
+        all.push(found);
+    }
+    if diagnosis.gap.simulation.is_some() {
+        diagnosis
+            .warnings
+            .extend(simulated::left_out(diagnosis, extension));
+    }
+    all
+}
+
+/// `LOGSTEM_before.csv.gz` and `LOGSTEM_after.csv.gz` of each validation log: t, tau1.. on its
+/// rows, and q1.. where its motion was simulated.
+fn predicted(
+    folder: &Path,
+    logs: &[Log],
+    predictions: Vec<Prediction>,
+    motions: Vec<Option<Motions>>,
+) -> Result<(), Failure> {
     let mut files = Predictions::new(folder)?;
-    for (log, Prediction { before, after }) in logs.iter().zip(predictions) {
-        files.write(&log.recording, [("before", before), ("after", after)])?;
+    for ((log, Prediction { before, after }), motions) in logs.iter().zip(predictions).zip(motions)
+    {
+        let mut columns = [vec![("tau", before)], vec![("tau", after)]];
+        if let Some(Motions { before, after }) = motions {
+            columns[0].push(("q", before));
+            columns[1].push(("q", after));
+        }
+        files.write(&log.recording, ["before", "after"].into_iter().zip(columns))?;
     }
     Ok(())
 }

@@ -398,7 +398,7 @@ fn predictions(
             let (x, kind) = (found.solution(), found.name);
             Ok((
                 kind.name(),
-                predict(model, recording, &x, &result.filter, kind)?,
+                vec![("tau", predict(model, recording, &x, &result.filter, kind)?)],
             ))
         };
         let torques: Vec<_> = result

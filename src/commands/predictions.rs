@@ -7,6 +7,9 @@ use idim::runtime::log::{self, Recording};
 
 use super::Failure;
 
+/// Series of all joints with the name that they share.
+pub type Named = (&'static str, Vec<Vec<f64>>);
+
 /// A folder of predictions. Two parts of one file do not overwrite each other: the second has a
 /// number.
 pub struct Predictions {
@@ -30,14 +33,15 @@ impl Predictions {
         })
     }
 
-    /// Writes `LOGSTEM_WHAT.csv.gz` with t, tau1.. for each named torque of a log.
+    /// Writes `LOGSTEM_WHAT.csv.gz` for each of some predictions of a log: t, then the series of
+    /// every joint under each name (`tau`, `q`).
     ///
     /// # Errors
     /// [`Failure::Log`] if a file cannot be written.
     pub fn write<'a>(
         &mut self,
         recording: &Recording,
-        torques: impl IntoIterator<Item = (&'a str, Vec<Vec<f64>>)>,
+        predictions: impl IntoIterator<Item = (&'a str, Vec<Named>)>,
     ) -> Result<(), Failure> {
         let count = self.seen.entry(recording.stem.clone()).or_default();
         *count += 1;
@@ -45,20 +49,20 @@ impl Predictions {
             1 => recording.stem.clone(),
             count => format!("{}-{count}", recording.stem),
         };
-        for (what, torque) in torques {
-            let rows = torque
-                .iter()
-                .map(|series| log::onto_stamps(recording, series));
-            let rows: Vec<Vec<f64>> = rows.collect();
-            let names: Vec<String> = (1..=rows.len())
-                .map(|joint| format!("tau{joint}"))
-                .collect();
+        for (what, series) in predictions {
+            let mut rows: Vec<(String, Vec<f64>)> = Vec::new();
+            for (name, joints) in series {
+                let own = joints.iter().enumerate();
+                rows.extend(own.map(|(joint, series)| {
+                    let name = format!("{name}{}", joint + 1);
+                    (name, log::onto_stamps(recording, series))
+                }));
+            }
             let mut columns: Vec<(&str, &[f64])> = vec![("t", &recording.stamps)];
-            let series = names
-                .iter()
-                .map(String::as_str)
-                .zip(rows.iter().map(Vec::as_slice));
-            columns.extend(series);
+            columns.extend(
+                rows.iter()
+                    .map(|(name, row)| (name.as_str(), row.as_slice())),
+            );
             log::write(&self.folder.join(format!("{stem}_{what}.csv.gz")), &columns)?;
         }
         Ok(())

@@ -8,11 +8,8 @@ use super::linear::add_scaled;
 use super::state::{Bench, Effect, State};
 use super::track::{Predicted, Track};
 use crate::model::JointKind;
-use crate::report::{GapCurves, Pictures, Signature, thinned};
+use crate::report::{GapCurves, Pictures, Signature};
 use crate::signal::central_difference;
-
-/// Points of a torque curve.
-const POINTS: usize = 1000;
 
 /// Points of a residual over a variable.
 const DOTS: usize = 1500;
@@ -290,16 +287,11 @@ fn torque(
             pairs.map(|(y, r)| y - r).collect()
         };
         let (old, new) = (model(&before[joint]), model(&after[joint]));
-        let keep = thinned(&[&measured, &old, &new], POINTS);
-        let at = |values: &[f64]| keep.iter().map(|&k| values[k] as f32).collect();
-        GapCurves {
-            joint: bench.model.joints()[joint].name.to_string(),
-            unit: unit(bench, joint).to_owned(),
-            t: keep.iter().map(|&k| t[k]).collect(),
-            measured: at(&measured),
-            before: at(&old),
-            after: at(&new),
-        }
+        let about = (
+            bench.model.joints()[joint].name.as_ref(),
+            unit(bench, joint),
+        );
+        GapCurves::new(about, &t, [&measured, &old, &new])
     };
     (0..on.joints()).map(of_joint).collect()
 }

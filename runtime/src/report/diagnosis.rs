@@ -183,6 +183,7 @@ pub struct Gap {
     /// Torque predicted from the logged motion.
     pub torque: Change<Fit>,
     /// Position of the closed-loop simulation; absent without reference and controller.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub simulation: Option<Change<Rms>>,
     /// What it was measured on.
     pub on: String,

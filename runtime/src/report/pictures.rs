@@ -2,8 +2,13 @@
 
 use serde::Serialize;
 
+use super::thinned;
+
+/// Points of a curve.
+const POINTS: usize = 1000;
+
 /// The curves of a diagnosis: larger than all the rest of it, and there only where they are asked
-/// for. Values are stored in single precision, which no drawing can exceed.
+/// for.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Pictures {
     /// What the residual looks like, for each effect and then for each joint that is not explained.
@@ -25,11 +30,29 @@ pub struct GapCurves {
     /// Time of each point since the beginning of the log, s.
     pub t: Vec<f64>,
     /// As measured.
-    pub measured: Vec<f32>,
+    pub measured: Vec<f64>,
     /// Without the effects.
-    pub before: Vec<f32>,
+    pub before: Vec<f64>,
     /// With them.
-    pub after: Vec<f32>,
+    pub after: Vec<f64>,
+}
+
+impl GapCurves {
+    /// Curves of a joint (name and unit of the values), thinned: over `t` (s) the series measured,
+    /// before and after, all of one length.
+    pub fn new((joint, unit): (&str, &str), t: &[f64], series: [&[f64]; 3]) -> Self {
+        let keep = thinned(&series, POINTS);
+        let [measured, before, after] =
+            series.map(|values| keep.iter().map(|&k| values[k]).collect());
+        GapCurves {
+            joint: joint.to_owned(),
+            unit: unit.to_owned(),
+            t: keep.iter().filter_map(|&k| t.get(k).copied()).collect(),
+            measured,
+            before,
+            after,
+        }
+    }
 }
 
 /// Residual torque of a joint over the variable that explains it best.

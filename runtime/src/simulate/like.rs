@@ -86,7 +86,7 @@ pub fn ideal(
 
 /// Position and velocity at the first sample of a log: least-squares parabola through its
 /// first samples.
-fn beginning(recording: &Recording) -> State {
+pub fn beginning(recording: &Recording) -> State {
     let fits = recording
         .q
         .iter()

@@ -58,7 +58,7 @@ pub use dynamics::Dynamics;
 pub use error::SimulateError;
 pub use influence::{Disturbance, Drift, Influence, LoadFriction, Moment, Weight};
 pub use inverse::inverse_dynamics;
-pub use like::{ideal, like};
+pub use like::{beginning, ideal, like};
 pub use open_loop::{OpenLoop, free_motion, open_loop};
 pub use options::{Grid, Method, Options, State};
 pub use parameters::{in_order, named_values, rigid_only};

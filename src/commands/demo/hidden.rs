@@ -11,7 +11,7 @@ use idim::runtime::model::IdentificationModel;
 use idim::runtime::report::Diagnosis;
 
 use super::save_log;
-use crate::commands::diagnose::write;
+use crate::commands::diagnose::{motions, write};
 use crate::commands::progress::Spinner;
 use crate::commands::robot::{self, Texts};
 use crate::commands::{Failure, output};
@@ -47,6 +47,7 @@ pub fn find(folder: &Path, spinner: &Spinner) -> Result<Diagnosis, Failure> {
     let extension = catalogue
         .extension(&diagnosis)
         .map_err(write::not_extended)?;
+    motions(&model, &mut diagnosis, &extension, (validate, spinner));
     let texts = Texts::of(robots::scara::NAME)?;
     write::write(&folder.join(WRITTEN), &texts, &diagnosis, &extension)?;
     Ok(diagnosis)

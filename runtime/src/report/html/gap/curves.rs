@@ -115,7 +115,7 @@ fn one(curve: &GapCurves, kind: &Kind, same: bool) -> Element {
 }
 
 fn heading(curve: &GapCurves, same: bool) -> Element {
-    let rms = |model: &[f32]| {
+    let rms = |model: &[f64]| {
         let error = difference(curve, model);
         let square: f64 = error.iter().map(|e| e * e).sum();
         number((square / error.len().max(1) as f64).sqrt(), 3)
@@ -141,10 +141,12 @@ fn heading(curve: &GapCurves, same: bool) -> Element {
 }
 
 fn values(curve: &GapCurves, kind: &Kind, same: bool) -> Element {
-    let measured = double(&curve.measured);
-    let mut all = vec![("measured", measured), ("before", double(&curve.before))];
+    let mut all = vec![
+        ("measured", curve.measured.clone()),
+        ("before", curve.before.clone()),
+    ];
     if !same {
-        all.push(("after", double(&curve.after)));
+        all.push(("after", curve.after.clone()));
     }
     let range = padded_range(all.iter().flat_map(|(_, values)| values.iter().copied()));
     let panel = drawn(curve, VALUES, range, &all, "");
@@ -160,9 +162,27 @@ fn errors(curve: &GapCurves, kind: &Kind, same: bool) -> Element {
     if !same {
         all.push(("after", difference(curve, &curve.after)));
     }
+    let (factor, unit) = scaled(&curve.unit, all.iter().flat_map(|(_, values)| values));
+    for value in all.iter_mut().flat_map(|(_, values)| values) {
+        *value *= factor;
+    }
     let range = padded_range(all.iter().flat_map(|(_, values)| values.iter().copied()));
     let panel = drawn(curve, ERROR, range, &all, " residual");
-    panel.finish(Some("time, s"), kind.error, &curve.unit)
+    let title = match factor == 1.0 {
+        true => kind.error.to_owned(),
+        false => format!("{}, {unit}", kind.error),
+    };
+    panel.finish(Some("time, s"), &title, &unit)
+}
+
+/// A unit in which errors of that size are numbers that can be read, and the factor to it.
+fn scaled<'a>(unit: &str, values: impl Iterator<Item = &'a f64>) -> (f64, String) {
+    let largest = values.fold(0.0, |top: f64, value| top.max(value.abs()));
+    match (unit, largest) {
+        ("rad" | "m", largest) if largest < 1e-4 => (1e6, format!("\u{b5}{unit}")),
+        ("rad" | "m", largest) if largest < 0.1 => (1e3, format!("m{unit}")),
+        _ => (1.0, unit.to_owned()),
+    }
 }
 
 fn drawn(
@@ -188,11 +208,7 @@ fn drawn(
 }
 
 /// Measured minus a model's.
-fn difference(curve: &GapCurves, model: &[f32]) -> Vec<f64> {
+fn difference(curve: &GapCurves, model: &[f64]) -> Vec<f64> {
     let pairs = curve.measured.iter().zip(model);
-    pairs.map(|(y, p)| f64::from(*y) - f64::from(*p)).collect()
-}
-
-fn double(values: &[f32]) -> Vec<f64> {
-    values.iter().map(|&value| f64::from(value)).collect()
+    pairs.map(|(y, p)| y - p).collect()
 }

@@ -55,13 +55,14 @@ fn found() -> FoundEffect {
 }
 
 fn pictures() -> Pictures {
+    let double = |size: f32| wave(400, size).into_iter().map(f64::from).collect();
     let curves = |joint: &str| GapCurves {
         joint: joint.into(),
         unit: "N m".into(),
         t: (0..400).map(|i| f64::from(i) * 0.01).collect(),
-        measured: wave(400, 5.0),
-        before: wave(400, 4.5),
-        after: wave(400, 4.9),
+        measured: double(5.0),
+        before: double(4.5),
+        after: double(4.9),
     };
     Pictures {
         signatures: vec![Signature {
@@ -271,7 +272,7 @@ fn no_name_becomes_markup_and_no_number_breaks_the_page() {
         pictures.signatures[0].variable = EVIL.into();
         pictures.signatures[0].x.fill(f32::NAN);
         pictures.torque[0].joint = EVIL.into();
-        pictures.torque[0].after.fill(f32::INFINITY);
+        pictures.torque[0].after.fill(f64::INFINITY);
         pictures.torque[1].t.clear();
     }
     let page = diagnosis_html(&evil);

@@ -1,0 +1,288 @@
+//! The motion of a log simulated in closed loop, with the model as a diagnosis found it described
+//! and with what was found.
+//!
+//! Effects that a description can ask for are columns of the extended model. Errors of drives and
+//! encoders, friction under load and friction that drifts are parts of the simulated plant.
+
+use idim_runtime::diagnose::Log;
+use idim_runtime::log::{Controller, Reference, Start};
+use idim_runtime::model::{IdentificationModel, JointKind};
+use idim_runtime::report::{Change, Diagnosis, FoundEffect, GapCurves, Rms};
+use idim_runtime::simulate::{
+    ClosedLoop, Drift, Grid, LoadFriction, Method, Options, Plant, SimulateError, State, beginning,
+    controlled, off_reference, rigid_only,
+};
+
+use crate::catalogue::Extension;
+use crate::interpreted::Interpreter;
+
+/// Step of the integration, s: far below what a controlled robot does, and a log's rate.
+const STEP_S: f64 = 1e-3;
+
+/// A motion without and with the effects, one series per joint on the grid of the log; rad or m.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Motions {
+    /// With the model as it is described, refitted.
+    pub before: Vec<Vec<f64>>,
+    /// With what was found.
+    pub after: Vec<Vec<f64>>,
+}
+
+/// Why there is no simulation of a log that has a reference and a controller.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum NoMotion {
+    /// The simulation itself.
+    #[error("{log}: its motion cannot be simulated: {source}")]
+    Simulate {
+        /// The log.
+        log: String,
+        /// Why not.
+        source: SimulateError,
+    },
+    /// The reference is not that of the log.
+    #[error(
+        "{log}: it leaves its reference at {second:.3} s, so its motion is not simulated: the \
+         reference is not that of this log, or the robot did not follow it"
+    )]
+    Elsewhere {
+        /// The log.
+        log: String,
+        /// Where, s.
+        second: f64,
+    },
+}
+
+/// What of a diagnosis no simulation of this kind holds, in a sentence each: bodies and hoses that
+/// act from outside, gears with a joint of their own, other geometry.
+pub fn left_out(diagnosis: &Diagnosis, extension: &Extension) -> Vec<String> {
+    let elsewhere = extension.elsewhere.iter();
+    let effects = elsewhere.filter_map(|(place, _)| diagnosis.effects.get(*place));
+    effects
+        .filter(|effect| !SIMULATED.contains(&effect.effect.as_str()))
+        .map(|effect| {
+            format!(
+                "the simulated motion is without {}, which is no part of a rigid robot and its \
+                 drives",
+                effect.effect
+            )
+        })
+        .collect()
+}
+
+/// Effects outside of descriptions that a plant can have.
+const SIMULATED: [&str; 7] = [
+    "drive_gain",
+    "drive_saturation",
+    "drive_dead_zone",
+    "time_shift",
+    "encoder_eccentricity",
+    "friction_drift",
+    "load_dependent_friction",
+];
+
+/// Simulates the motion of a log under its reference and controller; `None` if it has not both.
+///
+/// # Errors
+/// [`NoMotion`]: the log does not follow its reference, or the simulation is not possible.
+pub fn motions(
+    model: &dyn IdentificationModel,
+    diagnosis: &Diagnosis,
+    extension: &Extension,
+    log: &Log,
+) -> Result<Option<Motions>, NoMotion> {
+    let (Some(reference), Some(controller)) = (&log.companion.reference, &log.companion.controller)
+    else {
+        return Ok(None);
+    };
+    let name = || log.recording.name.clone();
+    let failed = |source| NoMotion::Simulate {
+        log: name(),
+        source,
+    };
+    if let Some(part) = off_reference(model, &log.recording, reference).map_err(failed)? {
+        return Err(NoMotion::Elsewhere {
+            log: name(),
+            second: part.second,
+        });
+    }
+    let before: Vec<f64> = diagnosis
+        .parameters
+        .iter()
+        .map(|p| p.before.value)
+        .collect();
+    let course = Course {
+        model,
+        rigid: feedforward(model, &before),
+        reference,
+        controller,
+        log,
+    };
+    let extended = Interpreter::new(&extension.robot);
+    let run_before = || course.run(Plant::ideal(model, &before));
+    let run_after = || course.run(plant(&extended, diagnosis, extension)?);
+    let (before, after) = match diagnosis.effects.is_empty() {
+        true => {
+            let only = run_before();
+            (only.clone(), only)
+        }
+        false => std::thread::scope(|scope| {
+            let other = scope.spawn(run_before);
+            let after = run_after();
+            // A thread that does not come back has panicked, which this one then does too.
+            let before = other.join();
+            (
+                before.unwrap_or_else(|panic| std::panic::resume_unwind(panic)),
+                after,
+            )
+        }),
+    };
+    Ok(Some(Motions {
+        before: before.map_err(failed)?,
+        after: after.map_err(failed)?,
+    }))
+}
+
+/// The parameters of the controller's feedforward: the described bodies, or else the rigid part.
+fn feedforward(model: &dyn IdentificationModel, parameters: &[f64]) -> Vec<f64> {
+    let described = &model.knowledge().rigid;
+    match described.is_empty() {
+        true => rigid_only(model, parameters),
+        false => described.to_vec(),
+    }
+}
+
+/// What both simulations follow.
+struct Course<'a> {
+    model: &'a dyn IdentificationModel,
+    rigid: Vec<f64>,
+    reference: &'a Reference,
+    controller: &'a Controller,
+    log: &'a Log,
+}
+
+impl Course<'_> {
+    /// The true motion of a plant.
+    fn run(&self, mut plant: Plant<'_>) -> Result<Vec<Vec<f64>>, SimulateError> {
+        for encoder in &mut plant.encoders {
+            encoder.resolution = self.log.companion.encoder_resolution;
+        }
+        let start: State = beginning(&self.log.recording);
+        let plan = ClosedLoop {
+            reference: self.reference,
+            controller: self.controller,
+            rigid: &self.rigid,
+            grid: Grid::of(&self.log.recording),
+            start: (self.controller.start == Start::Log).then_some(&start),
+        };
+        let options = Options {
+            method: Method::Fixed { step_s: STEP_S },
+            ..Options::default()
+        };
+        Ok(controlled(plant, self.model, &plan, &options)?.q)
+    }
+}
+
+/// The extended robot with what no description can ask for.
+fn plant<'a>(
+    model: &'a Interpreter,
+    diagnosis: &Diagnosis,
+    extension: &'a Extension,
+) -> Result<Plant<'a>, SimulateError> {
+    let mut plant = Plant::ideal(model, &extension.parameters);
+    for (place, _) in &extension.elsewhere {
+        if let Some(effect) = diagnosis.effects.get(*place) {
+            put(effect, &mut plant, extension)?;
+        }
+    }
+    Ok(plant)
+}
+
+/// Adds an effect to a plant; one that a plant cannot have is left out.
+fn put(
+    effect: &FoundEffect,
+    plant: &mut Plant<'_>,
+    extension: &Extension,
+) -> Result<(), SimulateError> {
+    let value = |k: usize| effect.parameters.get(k).map_or(0.0, |found| found.value);
+    let shape = |name: &str| effect.shape.get(name).copied().unwrap_or(0.0);
+    let column = |name: &str, joint: usize| {
+        let name = format!("{name}{}", joint + 1);
+        let mut columns = extension.robot.base.parameters.iter();
+        columns.position(|parameter| parameter.name == name)
+    };
+    for joint in effect
+        .joints
+        .iter()
+        .filter_map(|joint| joint.checked_sub(1))
+    {
+        let (drive, encoder) = (&mut plant.drives[joint], &mut plant.encoders[joint]);
+        match effect.effect.as_str() {
+            // The log has more torque than acts by this share.
+            "drive_gain" => drive.gain = 1.0 / (1.0 + value(0)),
+            "drive_saturation" => {
+                drive.saturation = Some((shape("level").abs(), 1.0 / (1.0 + value(0))));
+            }
+            "drive_dead_zone" => drive.dead_zone = value(0),
+            // Torque that is logged early acts late.
+            "time_shift" => drive.lag = value(0).max(0.0),
+            // The effect is what has to be added to a reading.
+            "encoder_eccentricity" => {
+                encoder.eccentricity = Some((shape("N"), -value(0), -value(1)));
+            }
+            "friction_drift" => {
+                let changes = [("FS", 0), ("FV", 1)].into_iter().filter_map(|(name, k)| {
+                    let column = column(name, joint)?;
+                    Some((column, extension.parameters[column], value(k)))
+                });
+                plant.influences.push(Box::new(Drift {
+                    time: shape("T"),
+                    changes: changes.collect(),
+                }));
+            }
+            "load_dependent_friction" => {
+                if let Some(coulomb) = column("FS", joint) {
+                    let on = (joint, coulomb);
+                    let load = LoadFriction::new(plant.model, plant.parameters, on, value(0))?;
+                    plant.influences.push(Box::new(load));
+                }
+            }
+            _ => {}
+        }
+    }
+    Ok(())
+}
+
+/// Root mean square distance of the simulated positions from those of the log.
+pub fn gap(log: &Log, motions: &Motions) -> Change<Rms> {
+    let rms = |simulated: &[Vec<f64>]| {
+        let pairs = simulated.iter().zip(&log.recording.q);
+        let joint = |(a, b): (&Vec<f64>, &Vec<f64>)| {
+            let square: f64 = a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum();
+            (square / a.len().max(1) as f64).sqrt()
+        };
+        Rms {
+            rms: pairs.map(joint).collect(),
+        }
+    };
+    Change {
+        before: rms(&motions.before),
+        after: rms(&motions.after),
+    }
+}
+
+/// The positions as a page draws them.
+pub fn curves(model: &dyn IdentificationModel, log: &Log, motions: &Motions) -> Vec<GapCurves> {
+    let grid = Grid::of(&log.recording);
+    let t: Vec<f64> = (0..grid.len).map(|k| grid.time(k)).collect();
+    let joints = model.joints().iter().enumerate();
+    joints
+        .map(|(j, joint)| {
+            let unit = match joint.kind {
+                JointKind::Revolute => "rad",
+                JointKind::Prismatic => "m",
+            };
+            let series = [&log.recording.q[j], &motions.before[j], &motions.after[j]];
+            GapCurves::new((&joint.name, unit), &t, series.map(Vec::as_slice))
+        })
+        .collect()
+}
