@@ -1,0 +1,174 @@
+//! From the graph to steps: registers are assigned while walking the order.
+
+use super::{Op, Step};
+use crate::expr::graph::{Expr, Graph, Node};
+use crate::expr::schedule::{operands, uses};
+
+/// Assigns registers while walking the order.
+pub(super) struct Assembler<'a> {
+    graph: &'a Graph,
+    remaining: Vec<usize>,
+    stores: Vec<Vec<(usize, f64)>>,
+    place: Vec<usize>,
+    /// The nodes of each angle's sine and cosine.
+    pairs: Vec<[usize; 2]>,
+    /// The products that are computed together with the one sum they enter.
+    fused: Vec<bool>,
+    free: Vec<usize>,
+    pub(super) registers: usize,
+    pub(super) steps: Vec<Step>,
+}
+
+impl<'a> Assembler<'a> {
+    pub(super) fn new(graph: &'a Graph, outputs: &[Expr]) -> Self {
+        let count = graph.nodes().len();
+        let mut stores = vec![Vec::new(); count];
+        for (index, output) in outputs.iter().enumerate() {
+            let sign = if output.is_negative() { -1.0 } else { 1.0 };
+            stores[output.node()].push((index, sign));
+        }
+        let mut pairs = vec![[0; 2]; graph.angle_count()];
+        for (index, node) in graph.nodes().iter().enumerate() {
+            match *node {
+                Node::Sin(angle) => pairs[angle][0] = index,
+                Node::Cos(angle) => pairs[angle][1] = index,
+                _ => {}
+            }
+        }
+        let remaining = uses(graph, outputs);
+        Assembler {
+            graph,
+            fused: fused(graph, &remaining),
+            remaining,
+            stores,
+            place: vec![usize::MAX; count],
+            pairs,
+            free: Vec::new(),
+            registers: 0,
+            steps: Vec::new(),
+        }
+    }
+
+    pub(super) fn compute(&mut self, index: usize) {
+        match self.graph.nodes()[index] {
+            Node::Sin(angle) | Node::Cos(angle) => self.sin_cos(angle, index),
+            Node::Constant(bits) => self.push(index, Op::Constant(f64::from_bits(bits))),
+            Node::Input(input) => self.push(index, Op::Input(input)),
+            Node::Add(a, b) => self.push(index, self.sum(a, b)),
+            Node::Sub(a, b) => self.push(index, self.difference(a, b)),
+            Node::Mul(..) if self.fused[index] => {}
+            Node::Mul(a, b) => self.push(index, Op::Mul(self.at(a), self.at(b))),
+            Node::Call(function, a) => self.push(index, Op::Call(function, self.at(a))),
+        }
+        for (output, sign) in std::mem::take(&mut self.stores[index]) {
+            let target = self.place[index];
+            let op = Op::Store(target, output, sign);
+            self.steps.push(Step { op, target });
+            self.release(index);
+        }
+    }
+
+    fn at(&self, expr: Expr) -> usize {
+        self.place[expr.node()]
+    }
+
+    fn sum(&self, a: Expr, b: Expr) -> Op {
+        match (self.product(a), self.product(b)) {
+            (Some((x, y)), _) => Op::MulAdd(x, y, self.at(b)),
+            (_, Some((x, y))) => Op::MulAdd(x, y, self.at(a)),
+            _ => Op::Add(self.at(a), self.at(b)),
+        }
+    }
+
+    fn difference(&self, a: Expr, b: Expr) -> Op {
+        match (self.product(a), self.product(b)) {
+            (Some((x, y)), _) => Op::MulSub(x, y, self.at(b)),
+            (_, Some((x, y))) => Op::SubMul(x, y, self.at(a)),
+            _ => Op::Sub(self.at(a), self.at(b)),
+        }
+    }
+
+    /// The factors of a product that is computed together with the sum it enters.
+    fn product(&self, expr: Expr) -> Option<(usize, usize)> {
+        match self.graph.nodes()[expr.node()] {
+            Node::Mul(a, b) if self.fused[expr.node()] => Some((self.at(a), self.at(b))),
+            _ => None,
+        }
+    }
+
+    fn push(&mut self, index: usize, op: Op) {
+        // A step reads its operands before it writes, so the target may be one of them.
+        for operand in operands(self.graph.nodes()[index]) {
+            match self.fused[operand.node()] {
+                true => operands(self.graph.nodes()[operand.node()])
+                    .for_each(|factor| self.release(factor.node())),
+                false => self.release(operand.node()),
+            }
+        }
+        let target = self.register(index);
+        self.steps.push(Step { op, target });
+    }
+
+    /// Sine and cosine cost little more than one of them: the other one waits in its register.
+    fn sin_cos(&mut self, angle: usize, index: usize) {
+        if self.place[index] != usize::MAX {
+            return;
+        }
+        let pair = self.pairs[angle];
+        let [target, cosine] = pair.map(|index| self.register(index));
+        let op = Op::SinCos(angle, cosine);
+        self.steps.push(Step { op, target });
+        let unused = pair.into_iter().filter(|&index| self.remaining[index] == 0);
+        self.free.extend(unused.map(|index| self.place[index]));
+    }
+
+    fn register(&mut self, index: usize) -> usize {
+        let register = self.free.pop().unwrap_or_else(|| {
+            self.registers += 1;
+            self.registers - 1
+        });
+        self.place[index] = register;
+        register
+    }
+
+    fn release(&mut self, index: usize) {
+        self.remaining[index] -= 1;
+        if self.remaining[index] == 0 {
+            self.free.push(self.place[index]);
+        }
+    }
+
+    pub(super) fn angles(&self) -> Vec<(Vec<(usize, f64)>, f64)> {
+        (0..self.graph.angle_count())
+            .map(|index| {
+                let angle = self.graph.angle(index);
+                let terms = angle
+                    .terms
+                    .iter()
+                    .map(|&(joint, sign)| (joint, f64::from(sign)));
+                (terms.collect(), angle.offset.value())
+            })
+            .collect()
+    }
+}
+
+/// Which products enter one sum and nothing else; at most one product of each sum.
+fn fused(graph: &Graph, uses: &[usize]) -> Vec<bool> {
+    let mut fused = vec![false; uses.len()];
+    for (node, _) in graph
+        .nodes()
+        .iter()
+        .zip(uses)
+        .filter(|(_, uses)| **uses > 0)
+    {
+        if let Node::Add(a, b) | Node::Sub(a, b) = *node {
+            let product = [b, a].into_iter().map(Expr::node).find(|&operand| {
+                uses[operand] == 1 && matches!(graph.nodes()[operand], Node::Mul(..))
+            });
+            if let Some(product) = product {
+                fused[product] = true;
+            }
+        }
+    }
+    fused
+}
