@@ -5,17 +5,23 @@
 //! are applied together (their products among themselves are known), so each column of the panel
 //! travels through the registers once per group.
 
-use wide::f64x4;
+use pulp::{Arch, Simd, WithSimd};
 
 /// Rows of a panel: enough to make the arithmetic dear and the memory cheap, few enough that 60
 /// columns stay in the first-level cache.
 pub(super) const ROWS: usize = 64;
 
-/// A column of a panel, in lanes of four.
-pub(super) type Column = [[f64; 4]; ROWS / 4];
+/// Rows that are worked on side by side: those of the widest registers.
+pub(super) const LANES: usize = 8;
+
+/// Some rows of a column.
+type Lanes = [f64; LANES];
+
+/// A column of a panel.
+pub(super) type Column = [Lanes; ROWS / LANES];
 
 /// Reflections applied together: as many as the registers hold.
-const GROUP: usize = if cfg!(target_feature = "avx") { 4 } else { 2 };
+const GROUP: usize = 4;
 
 /// Columns that a group of reflections is applied to side by side.
 const ABREAST: usize = 2;
@@ -34,6 +40,7 @@ struct Reflection {
 
 impl Reflection {
     /// The reflection of a diagonal entry and the panel's column below it, and the new entry.
+    #[inline(always)]
     fn new(alpha: f64, a: &Column) -> (Self, f64) {
         let mu = (alpha * alpha + dot(a, a)).sqrt();
         let inverse = |x: f64| if x > 0.0 { 1.0 / x } else { 0.0 };
@@ -62,16 +69,32 @@ impl Reflection {
 /// \\( R'^T R' = R^T R + A^T A \\). The panel is overwritten. `r` has `n (n + 1) / 2` entries for
 /// n columns; all diagonal entries must be and are non-negative.
 pub(super) fn fold(r: &mut [f64], panel: &mut [Column]) {
-    let (mut r, mut panel) = (r, panel);
-    while panel.len() >= GROUP {
-        (r, panel) = fold_group::<GROUP>(r, panel);
-    }
-    while !panel.is_empty() {
-        (r, panel) = fold_group::<1>(r, panel);
+    Arch::new().dispatch(Folding { r, panel });
+}
+
+/// [`fold`] on the vectors of a machine.
+struct Folding<'a> {
+    r: &'a mut [f64],
+    panel: &'a mut [Column],
+}
+
+impl WithSimd for Folding<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let (mut r, mut panel) = (self.r, self.panel);
+        while panel.len() >= GROUP {
+            (r, panel) = fold_group::<GROUP>(r, panel);
+        }
+        while !panel.is_empty() {
+            (r, panel) = fold_group::<1>(r, panel);
+        }
     }
 }
 
 /// Eliminates the first `G` columns of the panel; returns the rows and columns that are left.
+#[inline(always)]
 fn fold_group<'a, const G: usize>(
     r: &'a mut [f64],
     panel: &'a mut [Column],
@@ -113,6 +136,7 @@ struct Group<'a, const G: usize> {
 )]
 impl<'a, const G: usize> Group<'a, G> {
     /// Reflects the first `G` columns of a panel among themselves.
+    #[inline(always)]
     fn new(v: &'a mut [Column; G], rows: &mut [f64], width: usize) -> Self {
         let mut reflections = [Reflection::default(); G];
         let mut products = [[0.0; G]; G];
@@ -142,28 +166,32 @@ impl<'a, const G: usize> Group<'a, G> {
     /// factor stand at `at`.
     #[inline(always)]
     fn apply<const M: usize>(&self, rows: &mut [f64], at: usize, columns: &mut [Column; M]) {
-        let mut sums = [[f64x4::ZERO; G]; M];
-        for k in 0..ROWS / 4 {
+        let mut sums = [[[0.0; LANES]; G]; M];
+        for k in 0..ROWS / LANES {
             for m in 0..M {
-                let c = f64x4::from(columns[m][k]);
                 for g in 0..G {
-                    sums[m][g] += f64x4::from(self.v[g][k]) * c;
+                    sums[m][g] = plus(&sums[m][g], &times(&self.v[g][k], &columns[m][k]));
                 }
             }
         }
-        let mut steps = [[f64x4::ZERO; G]; M];
+        let mut steps = [[[0.0; LANES]; G]; M];
         for m in 0..M {
-            steps[m] = self
-                .steps(rows, at + m, sums[m].map(total))
-                .map(f64x4::splat);
+            let mut dots = [0.0; G];
+            for g in 0..G {
+                dots[g] = total(&sums[m][g]);
+            }
+            let all = self.steps(rows, at + m, dots);
+            for g in 0..G {
+                steps[m][g] = [all[g]; LANES];
+            }
         }
-        for k in 0..ROWS / 4 {
+        for k in 0..ROWS / LANES {
             for m in 0..M {
-                let mut c = f64x4::from(columns[m][k]);
+                let mut c = columns[m][k];
                 for g in 0..G {
-                    c -= steps[m][g] * f64x4::from(self.v[g][k]);
+                    c = minus(&c, &times(&steps[m][g], &self.v[g][k]));
                 }
-                columns[m][k] = c.to_array();
+                columns[m][k] = c;
             }
         }
     }
@@ -188,23 +216,50 @@ impl<'a, const G: usize> Group<'a, G> {
 
 /// Sum of the lanes, in a fixed order.
 #[inline(always)]
-fn total(lanes: f64x4) -> f64 {
-    let [a, b, c, d] = lanes.to_array();
-    (a + c) + (b + d)
+fn total(lanes: &Lanes) -> f64 {
+    let [a, b, c, d, e, f, g, h] = lanes;
+    ((a + e) + (c + g)) + ((b + f) + (d + h))
 }
 
 #[inline(always)]
 fn dot(a: &Column, b: &Column) -> f64 {
-    let lanes = a.iter().zip(b).fold(f64x4::ZERO, |sum, (a, b)| {
-        sum + f64x4::from(*a) * f64x4::from(*b)
-    });
-    total(lanes)
+    let mut sum = [0.0; LANES];
+    for (a, b) in a.iter().zip(b) {
+        sum = plus(&sum, &times(a, b));
+    }
+    total(&sum)
 }
 
 #[inline(always)]
 fn subtract(step: f64, a: &Column, from: &mut Column) {
-    let step = f64x4::splat(step);
     for (x, a) in from.iter_mut().zip(a) {
-        *x = (f64x4::from(*x) - step * f64x4::from(*a)).to_array();
+        *x = minus(x, &times(&[step; LANES], a));
     }
+}
+
+#[inline(always)]
+fn times(a: &Lanes, b: &Lanes) -> Lanes {
+    let mut result = *a;
+    for (a, b) in result.iter_mut().zip(b) {
+        *a *= b;
+    }
+    result
+}
+
+#[inline(always)]
+fn plus(a: &Lanes, b: &Lanes) -> Lanes {
+    let mut result = *a;
+    for (a, b) in result.iter_mut().zip(b) {
+        *a += b;
+    }
+    result
+}
+
+#[inline(always)]
+fn minus(a: &Lanes, b: &Lanes) -> Lanes {
+    let mut result = *a;
+    for (a, b) in result.iter_mut().zip(b) {
+        *a -= b;
+    }
+    result
 }

@@ -1,6 +1,6 @@
 //! The triangular factor of a set of rows, and how rows and other factors are folded into it.
 
-use super::kernel::{Column, ROWS, fold};
+use super::kernel::{Column, LANES, ROWS, fold};
 
 /// Upper triangular factor R of a matrix A of `rows` x `width`, in the field's use `[W | Y]`:
 /// \\( R^T R = A^T A \\), so that \\( \|Y - W X\| = \|R (-X; 1)\| \\) for every X, whatever the
@@ -112,7 +112,7 @@ impl Fold {
     pub fn new(width: usize) -> Self {
         Fold {
             triangle: Triangle::empty(width),
-            panel: vec![[[0.0; 4]; ROWS / 4]; width],
+            panel: vec![[[0.0; LANES]; ROWS / LANES]; width],
             filled: 0,
         }
     }
@@ -166,7 +166,7 @@ impl Fold {
     fn fold_if_full(&mut self) {
         if self.filled == ROWS {
             fold(&mut self.triangle.packed, &mut self.panel);
-            self.panel.fill([[0.0; 4]; ROWS / 4]);
+            self.panel.fill([[0.0; LANES]; ROWS / LANES]);
             self.filled = 0;
         }
     }

@@ -1,5 +1,7 @@
 //! Filters chosen from the data, by the rules of Gautier 1996, section 6.
 
+use rayon::prelude::*;
+
 use super::{IdentifyError, excited};
 use crate::log::{Recording, Samples};
 use crate::observe::rests;
@@ -89,10 +91,12 @@ pub(super) fn looks(logs: &[&dyn Samples]) -> Result<Vec<Recording>, IdentifyErr
             looks.push(log.window(0..len)?);
             continue;
         }
-        for look in 0..LOOKS {
+        let window = |look: usize| {
             let start = look * (len - WINDOW) / (LOOKS - 1);
-            looks.push(log.window(start..start + WINDOW)?);
-        }
+            log.window(start..start + WINDOW)
+        };
+        let windows = (0..LOOKS).into_par_iter().map(window);
+        looks.extend(windows.collect::<Result<Vec<_>, _>>()?);
     }
     Ok(looks)
 }

@@ -1,5 +1,7 @@
 //! Standard deviations that hold although filtered residuals are correlated in time.
 
+use rayon::prelude::*;
+
 use crate::evidence::{Evidence, Question, Weighting};
 use crate::model::IdentificationModel;
 use crate::settings::Weights;
@@ -29,6 +31,7 @@ pub(super) fn corrected(
         .and_then(|fit| evidence.corrected(&fit));
     match covariance {
         Ok(covariance) => (0..model.columns().len())
+            .into_par_iter()
             .map(|column| {
                 covariance
                     .half_width(column, 0.95)

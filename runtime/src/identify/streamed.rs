@@ -10,6 +10,7 @@ use crate::estimate::EstimateError;
 use crate::evidence::{Cut, Evidence, Fold, Layout, Triangle};
 use crate::model::IdentificationModel;
 use crate::observe::{Course, ModelKind, Observations, stretch};
+use crate::signal::all_finite;
 
 /// Evidence of some models along a log, in their order. It does not depend on the number of
 /// threads.
@@ -86,7 +87,7 @@ fn block(
         rows,
         believed,
         &mut |kind, joint, columns| {
-            if broken.is_none() && !columns.iter().all(|column| finite(column)) {
+            if broken.is_none() && !columns.iter().all(|column| all_finite(column)) {
                 broken = Some((kind, joint));
             }
             let place = kinds.iter().position(|k| *k == kind).unwrap_or(0);
@@ -112,10 +113,6 @@ fn block(
             Ok(folds.into_iter().map(finish).collect())
         }
     }
-}
-
-fn finite(column: &[f64]) -> bool {
-    column.iter().all(|x| x.is_finite())
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 //! Nothing here changes a value or stops the reading; each finding is one sentence.
 
 use crate::model::{Joint, JointKind};
+use crate::signal::extent;
 
 /// A joint that stays within this range rests: sag and encoder noise, rad.
 const REST_ANGLE: f64 = 2e-3;
@@ -50,10 +51,10 @@ impl Motion<'_> {
 
 /// Smallest and largest value; (0, 0) of nothing.
 fn range(values: &[f64]) -> (f64, f64) {
-    let first = values.first().copied().unwrap_or(0.0);
-    values.iter().fold((first, first), |(low, high), &value| {
-        (low.min(value), high.max(value))
-    })
+    match values.is_empty() {
+        true => (0.0, 0.0),
+        false => extent(values),
+    }
 }
 
 fn torque_finding(name: &str, tau: &[f64]) -> Option<String> {

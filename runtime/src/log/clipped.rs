@@ -4,6 +4,7 @@
 use std::ops::Range;
 
 use super::doubt::{quantile, resolution};
+use crate::signal::extent;
 
 /// Rows at the limit that are no accident.
 const ROWS: usize = 6;
@@ -18,14 +19,18 @@ const REST_OF_FAST: f64 = 0.003;
 /// Runs of the highest or the lowest value of a torque that end as sharply as a limit does, while
 /// one of the joints `q` moves. Zero is no limit, but a drive that is off.
 pub(super) fn clipped(tau: &[f64], q: &[&[f64]]) -> Vec<Range<usize>> {
-    let low = tau.iter().copied().fold(f64::INFINITY, f64::min);
-    let high = tau.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let (low, high) = extent(tau);
+    // Most signals touch their extremes only now and then.
+    let at_extremes = tau.iter().filter(|x| (**x == low) | (**x == high)).count();
+    if at_extremes < ROWS || low == high {
+        return Vec::new();
+    }
     let at_limit = |value: f64| (value == low || value == high) && value != 0.0;
     let runs: Vec<Range<usize>> = runs(tau)
         .into_iter()
         .filter(|run| run.len() >= ROWS && at_limit(tau[run.start]))
         .collect();
-    if low == high || runs.is_empty() {
+    if runs.is_empty() {
         return Vec::new();
     }
     let step = resolution(tau);
@@ -58,8 +63,8 @@ fn fast(q: &[f64]) -> f64 {
 }
 
 fn span(q: &[f64]) -> f64 {
-    let low = q.iter().copied().fold(f64::INFINITY, f64::min);
-    q.iter().copied().fold(f64::NEG_INFINITY, f64::max) - low
+    let (low, high) = extent(q);
+    high - low
 }
 
 /// Consecutive rows with one value.

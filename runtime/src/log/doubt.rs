@@ -9,6 +9,7 @@ use std::ops::Range;
 
 use super::clipped::clipped;
 use crate::model::Joint;
+use crate::signal::{all_finite, median, medians};
 
 /// More than this fraction of bad values in one channel is no accident: the log is refused.
 pub(super) const BEARABLE: f64 = 0.1;
@@ -186,6 +187,9 @@ fn sentence(first_row: usize, finding: &Finding) -> String {
 
 /// Runs of values that are not finite.
 fn no_numbers(series: &[f64]) -> Vec<Range<usize>> {
+    if all_finite(series) {
+        return Vec::new();
+    }
     united(
         (0..series.len())
             .filter(|&i| !series[i].is_finite())
@@ -194,25 +198,22 @@ fn no_numbers(series: &[f64]) -> Vec<Range<usize>> {
     )
 }
 
-/// Samples far out of the median of five: a step of dry friction or of a fast move is not, since
+/// Samples far out of the median of five (at an end, of the five that there are): a step of dry friction or of a fast move is not, since
 /// at least three of the five lie on its side.
 fn spikes(series: &[f64]) -> Vec<Range<usize>> {
     if series.len() < 5 {
         return Vec::new();
     }
-    let smooth = smooth(series);
-    let rest: Vec<f64> = series
-        .iter()
-        .zip(&smooth)
-        .map(|(x, s)| (x - s).abs())
-        .collect();
-    let low = smooth.iter().copied().fold(f64::INFINITY, f64::min);
-    let high = smooth.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let far = SPIKE_OF_RANGE * (high - low);
+    let found = medians(series);
+    let far = SPIKE_OF_RANGE * (found.high - found.low);
+    let smooth = |i: usize| median(&series[i.clamp(2, series.len() - 3) - 2..][..5]);
+    let apart = |i: usize| (series[i] - smooth(i)).abs();
+    let at_ends = [0, 1, series.len() - 2, series.len() - 1].map(apart);
     // Most signals need no closer look.
-    if rest.iter().all(|&rest| rest <= far) {
+    if at_ends.iter().all(|rest| *rest <= far) && found.farthest <= far {
         return Vec::new();
     }
+    let rest: Vec<f64> = (0..series.len()).map(apart).collect();
     // The mean of the usual deviations, not their median: in a clean signal most are zero.
     let usual = quantile(&rest, 0.99).max(f64::MIN_POSITIVE);
     let limit = far
@@ -224,21 +225,6 @@ fn spikes(series: &[f64]) -> Vec<Range<usize>> {
             .map(|i| i..i + 1)
             .collect(),
     )
-}
-
-/// The median of each sample and the two on either side; at an end, of the five that there are.
-fn smooth(series: &[f64]) -> Vec<f64> {
-    let mut smooth = vec![0.0; series.len()];
-    let inner = smooth.iter_mut().skip(2);
-    for (smooth, five) in inner.zip(series.windows(5)) {
-        *smooth = median(five);
-    }
-    let last = smooth.len() - 3;
-    let (first, last) = (smooth[2], smooth[last]);
-    smooth[..2].fill(first);
-    let end = smooth.len() - 2;
-    smooth[end..].fill(last);
-    smooth
 }
 
 /// The smallest step between neighbours that differ; zero if none do: a sensor's resolution.
@@ -308,17 +294,6 @@ pub(super) fn united(mut ranges: Vec<Range<usize>>) -> Vec<Range<usize>> {
     all
 }
 
-/// The middle one of five: it lies between the inner values of the two outer pairs, or is the
-/// centre.
-fn median(five: &[f64]) -> f64 {
-    let &[a, b, c, d, e] = five else {
-        return f64::NAN;
-    };
-    let low = a.min(b).max(d.min(e));
-    let high = a.max(b).min(d.max(e));
-    low.min(high).max(low.max(high).min(c))
-}
-
 pub(super) fn quantile(values: &[f64], fraction: f64) -> f64 {
     let mut sorted = values.to_vec();
     let place = ((sorted.len().saturating_sub(1)) as f64 * fraction) as usize;
@@ -346,17 +321,6 @@ mod tests {
         torque[700] *= 100.0;
         torque[1500] = -400.0;
         assert_eq!(spikes(&torque), [700..701, 1500..1501]);
-    }
-
-    #[test]
-    fn median_of_five_in_any_order_is_the_third() {
-        for k in 0..120_usize {
-            let mut left = vec![1.0, 2.0, 3.0, 4.0, 5.0];
-            let order = [k / 24, k / 6 % 4, k / 2 % 3, k % 2, 0];
-            let five = order.map(|place| left.remove(place));
-            assert_eq!(median(&five), 3.0, "{five:?}");
-        }
-        assert_eq!(median(&[2.0, 2.0, 7.0, 7.0, 2.0]), 2.0);
     }
 
     #[test]

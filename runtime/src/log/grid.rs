@@ -70,8 +70,8 @@ impl Grid {
         }
         let dropped = repeats(rows, warnings)?;
         let stamps = Kept::new(rows.stamps, &dropped);
-        let rate_hz = rate(&stamps, given, warnings)?;
-        if fits(&stamps, rate_hz, false)? {
+        let (rate_hz, fits) = rate(&stamps, given, warnings)?;
+        if fits {
             let len = stamps.ends().len;
             return Ok(uniform(rate_hz, len, dropped));
         }

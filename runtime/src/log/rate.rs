@@ -3,6 +3,7 @@
 use super::error::Found;
 use super::order;
 use super::stamps::{Ends, Stamps, each_step};
+use crate::signal::{all_finite, extent};
 
 /// Stamps within this fraction of a step of the grid are on it.
 const ON_GRID: f64 = 1e-3;
@@ -20,26 +21,34 @@ const ROUND: [f64; 12] = [1.0, 1.2, 1.25, 1.5, 2.0, 2.4, 2.5, 3.0, 4.0, 5.0, 6.0
 /// Decimals coarser than half a step would hide lost samples; they count only when the rate was
 /// `given` by the user.
 pub(super) fn fits(stamps: &dyn Stamps, rate_hz: f64, given: bool) -> Found<bool> {
+    fit(stamps, quantum(stamps)?, rate_hz, given)
+}
+
+fn fit(stamps: &dyn Stamps, quantum: f64, rate_hz: f64, given: bool) -> Found<bool> {
     let step = 1.0 / rate_hz;
-    let quantum = quantum(stamps)?;
     let mut tolerance = ON_GRID * step;
     if given || quantum <= 0.5 * step {
         tolerance = tolerance.max(0.5 * quantum * (1.0 + 1e-6));
     }
     let Ends { first, .. } = stamps.ends();
-    let (mut low, mut high, mut k) = (0.0_f64, 0.0_f64, 0_usize);
+    let (mut low, mut high, mut k) = (0.0_f64, 0.0_f64, 0.0);
     let mut numbers = true;
+    let mut deviations = Vec::new();
     stamps.each(&mut |stamps| {
-        for stamp in stamps {
-            let deviation = stamp - first - k as f64 * step;
-            numbers &= !deviation.is_nan();
-            low = low.min(deviation);
-            high = high.max(deviation);
-            k += 1;
-        }
+        deviations.clear();
+        deviations.extend(stamps.iter().map(|stamp| {
+            k += 1.0;
+            stamp - first - (k - 1.0) * step
+        }));
+        numbers &= all_finite(&deviations);
+        let (lowest, highest) = extent(&deviations);
+        (low, high) = (low.min(lowest), high.max(highest));
     })?;
     Ok(numbers && high - low <= 2.0 * tolerance)
 }
+
+/// Numbers near this one, \( 1.5 \cdot 2^{52} \), are whole.
+const WHOLE: f64 = 6_755_399_441_055_744.0;
 
 /// The last decimal place that the stamps use, s; zero if they use more than nine.
 fn quantum(stamps: &dyn Stamps) -> Found<f64> {
@@ -50,7 +59,9 @@ fn quantum(stamps: &dyn Stamps) -> Found<f64> {
             while decimals <= 9 {
                 let scaled = stamp * scale;
                 let rounding = 1e-4 + 4.0 * f64::EPSILON * scaled.abs();
-                if (scaled - scaled.round()).abs() <= rounding {
+                // The sum has no digits behind the point; where it has lost more, so had the stamp.
+                let whole = (scaled + WHOLE) - WHOLE;
+                if (scaled - whole).abs() <= rounding {
                     break;
                 }
                 decimals += 1;
@@ -61,23 +72,24 @@ fn quantum(stamps: &dyn Stamps) -> Found<f64> {
     Ok(if decimals > 9 { 0.0 } else { 1.0 / scale })
 }
 
-/// The given rate, else a simple rate that explains every stamp, else the median step's.
+/// The given rate, else a simple rate that explains every stamp, else the median step's; and
+/// whether it fits every stamp.
 pub(super) fn rate(
     stamps: &dyn Stamps,
     given: Option<f64>,
     warnings: &mut Vec<String>,
-) -> Found<f64> {
-    let median = 1.0 / median_step(stamps)?;
+) -> Found<(f64, bool)> {
     if let Some(given) = given {
+        let median = 1.0 / median_step(stamps)?;
         if (median / given - 1.0).abs() > NEAR_ROUND {
             warnings.push(format!(
                 "The log companion says {given} Hz, the stamps say about {} Hz; {given} Hz is used.",
                 shown(median)
             ));
         }
-        return Ok(given);
+        return Ok((given, fits(stamps, given, false)?));
     }
-    let found = estimate(stamps, median)?;
+    let (found, fits) = estimate(stamps)?;
     if !(2.0..=1e5).contains(&found) {
         warnings.push(format!(
             "The stamps say {} Hz; if they are not seconds, write t = {{ unit = \"ms\" }} (or us, \
@@ -85,27 +97,30 @@ pub(super) fn rate(
             shown(found)
         ));
     }
-    Ok(found)
+    Ok((found, fits))
 }
 
 /// A simple rate that explains every stamp, else a round rate near the median step's.
-fn estimate(stamps: &dyn Stamps, median: f64) -> Found<f64> {
+fn estimate(stamps: &dyn Stamps) -> Found<(f64, bool)> {
     let Ends { first, last, len } = stamps.ends();
     let mean = (len.saturating_sub(1)) as f64 / (last - first);
     let whole_microseconds = 1e6 / (1e6 / mean).round();
+    let quantum = quantum(stamps)?;
     for rate in [round_rate(mean), mean.round(), whole_microseconds, mean] {
-        if rate > 0.0 && fits(stamps, rate, false)? {
-            return Ok(rate);
+        if rate > 0.0 && fit(stamps, quantum, rate, false)? {
+            return Ok((rate, true));
         }
     }
+    let median = 1.0 / median_step(stamps)?;
     let near = round_rate(median);
-    Ok(if (near / median - 1.0).abs() <= NEAR_ROUND {
+    let rate = if (near / median - 1.0).abs() <= NEAR_ROUND {
         near
     } else if median >= 10.0 {
         median.round()
     } else {
         median
-    })
+    };
+    Ok((rate, fit(stamps, quantum, rate, false)?))
 }
 
 fn median_step(stamps: &dyn Stamps) -> Found<f64> {

@@ -20,6 +20,7 @@ use super::speed::Pair;
 use super::table::{self, Table};
 use crate::model::Joint;
 use crate::settings::Drives;
+use crate::signal::all_finite;
 
 /// What the reader must find, and where it looks.
 #[derive(Clone, Debug, PartialEq)]
@@ -312,6 +313,9 @@ impl NotFinite {
 
     /// Counts those among values that begin at a data row.
     pub fn count(&mut self, first_row: usize, values: &[f64]) {
+        if all_finite(values) {
+            return;
+        }
         for (k, _) in values.iter().enumerate().filter(|(_, v)| !v.is_finite()) {
             self.count += 1;
             if self.rows.len() < Self::LISTED {

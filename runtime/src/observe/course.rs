@@ -9,7 +9,7 @@ use super::motion::{Motion, REST, taken_away};
 use super::{Filtering, ObserveError, check, check_torque, slip};
 use crate::log::Samples;
 use crate::model::IdentificationModel;
-use crate::signal::{Decimator, REACH, ZeroPhase};
+use crate::signal::{Decimator, REACH, ZeroPhase, extent};
 
 /// Samples that are looked at together.
 pub(super) const WINDOW: usize = 8192;
@@ -133,16 +133,23 @@ impl<'a> Course<'a> {
         Ok(motion.only(keep))
     }
 
-    /// Mean square of what the prefilter takes away, in some windows from end to end.
+    /// Mean square of what the prefilter takes away, in some windows from end to end; nothing where
+    /// nobody asks.
     fn taken(&self) -> Result<Vec<f64>, ObserveError> {
         const WINDOWS: usize = 8;
+        if !self.filtering.rests() {
+            return Ok(Vec::new());
+        }
         let last = self.source.len().saturating_sub(WINDOW);
-        let mut mean = vec![0.0; self.model.joints().len()];
-        for k in 0..WINDOWS {
+        let windows = (0..WINDOWS).into_par_iter().map(|k| {
             let start = k * last / (WINDOWS - 1);
             let recording = window(self.source, start..start + WINDOW)?;
             let motion = Motion::filtered(&recording, self.filtering)?;
-            let taken = taken_away(&recording.q, &motion.q);
+            Ok(taken_away(&recording.q, &motion.q))
+        });
+        let windows: Vec<Vec<f64>> = windows.collect::<Result<_, ObserveError>>()?;
+        let mut mean = vec![0.0; self.model.joints().len()];
+        for taken in windows {
             mean.iter_mut()
                 .zip(taken)
                 .for_each(|(mean, taken)| *mean += taken / WINDOWS as f64);
@@ -166,8 +173,26 @@ impl<'a> Course<'a> {
         Ok(states)
     }
 
+    /// A motion that contains some samples, and where in it they begin.
+    ///
+    /// # Errors
+    /// Those of [`Self::motion`].
+    pub fn around(&self, range: Range<usize>) -> Result<(Motion, usize), ObserveError> {
+        match self.slips.is_empty() {
+            true => self.filtered_around(&range),
+            false => Ok((self.motion(range)?, 0)),
+        }
+    }
+
     /// The motion at some samples, but for presliding states.
     fn filtered(&self, range: Range<usize>) -> Result<Motion, ObserveError> {
+        let (motion, start) = self.filtered_around(&range)?;
+        let end = range.end.min(self.source.len());
+        Ok(motion.only(start..start + end.saturating_sub(range.start)))
+    }
+
+    /// The same with its surroundings, and where in it the samples begin.
+    fn filtered_around(&self, range: &Range<usize>) -> Result<(Motion, usize), ObserveError> {
         // Two differences look further than the prefilter.
         let reach = self.prefilter.memory() + self.prefilter.extension() + 2 * REACH;
         let start = range.start.saturating_sub(reach);
@@ -176,7 +201,7 @@ impl<'a> Course<'a> {
         let mut motion = Motion::filtered(&recording, self.filtering)?;
         motion.rest_below(&self.taken, self.filtering);
         motion.hold(&self.resting);
-        Ok(motion.only(range.start - start..range.end.min(end) - start))
+        Ok((motion, range.start - start))
     }
 
     /// The rows that become equations, as ascending disjoint ranges: away from what is cut off
@@ -225,7 +250,19 @@ fn window(
 struct Extent {
     low: f64,
     high: f64,
+    /// Sum of its positions, if it rests.
     sum: f64,
+}
+
+impl Extent {
+    fn of(q: &[f64]) -> Extent {
+        let (low, high) = extent(q);
+        let sum = match high - low <= REST {
+            true => q.iter().sum(),
+            false => 0.0,
+        };
+        Extent { low, high, sum }
+    }
 }
 
 /// The joints that never move, and their mean positions; everything is checked on the way.
@@ -236,7 +273,7 @@ fn resting(source: &dyn Samples, joints: usize) -> Result<Vec<(usize, f64)>, Obs
         let recording = window(source, start..(start + WINDOW).min(len))?;
         check(&recording, joints)?;
         check_torque(&recording)?;
-        Ok(recording.q.iter().map(|q| extent(q)).collect())
+        Ok(recording.q.iter().map(|q| Extent::of(q)).collect())
     });
     let parts: Vec<Vec<Extent>> = parts.collect::<Result<_, ObserveError>>()?;
     let of_joint = |joint: usize| {
@@ -252,19 +289,6 @@ fn resting(source: &dyn Samples, joints: usize) -> Result<Vec<(usize, f64)>, Obs
     Ok(at_rest
         .map(|(joint, extent)| (joint, extent.sum / len as f64))
         .collect())
-}
-
-fn extent(q: &[f64]) -> Extent {
-    let nothing = Extent {
-        low: f64::INFINITY,
-        high: f64::NEG_INFINITY,
-        sum: 0.0,
-    };
-    q.iter().fold(nothing, |all, &q| Extent {
-        low: all.low.min(q),
-        high: all.high.max(q),
-        sum: all.sum + q,
-    })
 }
 
 #[cfg(test)]

@@ -78,6 +78,12 @@ impl Filtering {
         std::f64::consts::TAU * (self.fq_hz.powi(3) / 3.0 / above).sqrt()
     }
 
+    /// Whether velocities become zero where they are uncertain; not where the settings ask for plain
+    /// differences or measured velocities.
+    pub(super) fn rests(&self) -> bool {
+        self.velocity == Velocity::Derived && self.derivatives != Derivatives::Central
+    }
+
     /// Decimated rows cut off at either end after the parallel filter.
     pub(super) fn cut_after(&self) -> usize {
         match self.edges {

@@ -6,7 +6,7 @@ use super::{Filtering, ObserveError, slip};
 use crate::log::{Recording, within};
 use crate::model::IdentificationModel;
 use crate::settings::{Derivatives, Velocity};
-use crate::signal::{derivative, uncertainty};
+use crate::signal::{all_finite, derivative, extent, uncertainty};
 
 /// A joint whose position stays within this range, rad or m, is at rest: its velocity would be
 /// nothing but sensor noise, and the sign of it a coin toss.
@@ -65,8 +65,10 @@ impl Motion {
     ) -> Result<Self, ObserveError> {
         check(recording, model.joints().len())?;
         let mut motion = Motion::filtered(recording, filtering)?;
-        let taken = taken_away(&recording.q, &motion.q);
-        motion.rest_below(&taken, filtering);
+        if filtering.rests() {
+            let taken = taken_away(&recording.q, &motion.q);
+            motion.rest_below(&taken, filtering);
+        }
         motion.hold(&resting(&recording.q));
         motion.slip = slip::along(model, &motion.qd, recording.rate_hz, &[]);
         Ok(motion)
@@ -146,8 +148,7 @@ impl Motion {
     /// of the sensor, given by the mean square `taken` that the prefilter takes away from each joint.
     /// Nothing is changed where the settings ask for plain differences or measured velocities.
     pub(super) fn rest_below(&mut self, taken: &[f64], filtering: &Filtering) {
-        let derived = filtering.velocity == Velocity::Derived;
-        if !derived || filtering.derivatives == Derivatives::Central {
+        if !filtering.rests() {
             return;
         }
         let noise = filtering.noise_speed(self.rate_hz);
@@ -199,8 +200,7 @@ pub(super) fn taken_away(raw: &[Vec<f64>], filtered: &[Vec<f64>]) -> Vec<f64> {
 
 /// Whether a joint with these positions, rad or m, never moves.
 pub(crate) fn rests(q: &[f64]) -> bool {
-    let low = q.iter().copied().fold(f64::INFINITY, f64::min);
-    let high = q.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let (low, high) = extent(q);
     high - low <= REST
 }
 
@@ -276,6 +276,9 @@ fn check_finite(
     joint: usize,
     values: &[f64],
 ) -> Result<(), ObserveError> {
+    if all_finite(values) {
+        return Ok(());
+    }
     match values.iter().position(|x| !x.is_finite()) {
         Some(sample) => {
             let log = recording.name.clone();

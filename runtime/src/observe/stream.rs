@@ -49,6 +49,16 @@ enum Content {
     MotorPower,
 }
 
+impl Content {
+    /// Samples on either side that are looked at.
+    fn reach(self) -> usize {
+        match self {
+            Content::Regressor(_, Treatment::Rate) => REACH,
+            _ => 0,
+        }
+    }
+}
+
 /// Signals of one kind, filtered together.
 struct Channel {
     content: Content,
@@ -95,7 +105,7 @@ impl<'a> Stream<'a> {
             ratio: course.decimator.ratio(),
             rate_hz: course.rate_hz(),
             derivatives: course.decimator.derivatives(),
-            row,
+            row: row + 1,
             channels: contents.iter().map(channel).collect(),
             blocks: kinds
                 .iter()
@@ -107,21 +117,24 @@ impl<'a> Stream<'a> {
         }
     }
 
-    /// Takes the next `rows` rows of a motion, which begins [`REACH`] samples and `start` rows before
-    /// the last row.
+    /// Takes the next `rows` rows of a motion, in which the last row stands [`REACH`] samples after
+    /// sample `start`.
     pub fn follow(&mut self, motion: &Motion, start: usize, rows: usize) {
-        // From the sample after the last row, and what derivatives look at on either side.
-        let samples = start * self.ratio + 1..(start + rows) * self.ratio + 1 + 2 * REACH;
-        for (to, from) in
-            self.states
-                .iter_mut()
-                .zip([&motion.q, &motion.qd, &motion.qdd, &motion.slip])
-        {
-            to.clear();
-            from.iter()
-                .for_each(|joint| to.extend(&joint[samples.clone()]));
-        }
+        let inner = rows * self.ratio;
         for channel in &mut self.channels {
+            // From the sample after the last row, and what derivatives look at on either side.
+            let reach = channel.content.reach();
+            let first = start + REACH - reach + 1;
+            let samples = first..first + inner + 2 * reach;
+            for (to, from) in
+                self.states
+                    .iter_mut()
+                    .zip([&motion.q, &motion.qd, &motion.qdd, &motion.slip])
+            {
+                to.clear();
+                from.iter()
+                    .for_each(|joint| to.extend(&joint[samples.clone()]));
+            }
             let states = States {
                 len: samples.len(),
                 q: &self.states[0],
@@ -139,16 +152,14 @@ impl<'a> Stream<'a> {
                 samples.start,
                 &mut self.samples,
             );
-            let inner = rows * self.ratio;
+            if reach == 0 {
+                channel.running.take(&self.samples, rows);
+                continue;
+            }
             self.rates.clear();
             for signal in self.samples.chunks(samples.len()) {
-                match channel.content {
-                    Content::Regressor(_, Treatment::Rate) => {
-                        let rates = derivative(signal, self.rate_hz, self.derivatives);
-                        self.rates.extend(&rates[REACH..REACH + inner]);
-                    }
-                    _ => self.rates.extend(&signal[REACH..REACH + inner]),
-                }
+                let rates = derivative(signal, self.rate_hz, self.derivatives);
+                self.rates.extend(&rates[reach..reach + inner]);
             }
             channel.running.take(&self.rates, rows);
         }

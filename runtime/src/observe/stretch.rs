@@ -11,11 +11,10 @@ use crate::model::IdentificationModel;
 use crate::signal::REACH;
 
 /// Samples that the regressor is evaluated on at once: its signals then stay in cache.
-const CHUNK: usize = 512;
+const CHUNK: usize = 384;
 
-/// Rows that are handed on together, where the log is long enough: each time, the sums over the
-/// samples ahead are gone through again.
-const BATCH: usize = 192;
+/// Rows that are handed on together, where the log is long enough.
+const BATCH: usize = 64;
 
 /// Hands the rows of some models on, in the order of time: the `believed` ones among `rows`.
 ///
@@ -99,11 +98,12 @@ fn inside_rows(
     let mut at = rows.start - edge;
     while at < last {
         let window = at..(at + per_window).min(last);
-        let motion =
-            course.motion(course.sample(at) - REACH..course.sample(window.end) + 1 + REACH)?;
+        let samples = course.sample(at) - REACH..course.sample(window.end) + 1 + REACH;
+        let (motion, first) = course.around(samples)?;
         while at < window.end {
             let next = (at + per_chunk).min(window.end);
-            stream.follow(&motion, at - window.start, next - at);
+            let from = first + (at - window.start) * ratio;
+            stream.follow(&motion, from, next - at);
             at = next;
             // The last rows have just as many after them as they need.
             if at == last || stream.ready(edge) >= BATCH {

@@ -1,6 +1,6 @@
 //! Second-order sections and one pass of them over many signals side by side.
 
-use wide::f64x8;
+use pulp::{Arch, Simd, WithSimd};
 
 use super::planar::LANES;
 
@@ -105,73 +105,80 @@ impl Cascade {
         };
         let Some(&start) = start else { return };
         for (sections, steady) in self.sections.chunks(SWEEP).zip(self.steady.chunks(SWEEP)) {
+            let (steps, start) = ((sections, steady), (start, reverse));
             match sections.len() {
-                1 => sweep::<1>(sections, steady, start, samples, reverse),
-                2 => sweep::<2>(sections, steady, start, samples, reverse),
-                3 => sweep::<3>(sections, steady, start, samples, reverse),
-                _ => sweep::<SWEEP>(sections, steady, start, samples, reverse),
+                1 => sweep::<1>(steps, start, samples),
+                2 => sweep::<2>(steps, start, samples),
+                3 => sweep::<3>(steps, start, samples),
+                _ => sweep::<SWEEP>(steps, start, samples),
             }
         }
     }
 }
 
+fn sweep<const N: usize>(
+    (sections, steady): (&[Section], &[[f64; 2]]),
+    (start, reverse): ([f64; LANES], bool),
+    samples: &mut [[f64; LANES]],
+) {
+    if let (Ok(sections), Ok(steady)) = (sections.try_into(), steady.try_into()) {
+        Arch::new().dispatch(Sweep::<N> {
+            sections,
+            steady,
+            start,
+            samples,
+            reverse,
+        });
+    }
+}
+
 /// `N` sections over all samples, direct form II transposed. The recursion is serial in time, so
 /// speed comes from the lanes: each holds another signal.
-fn sweep<const N: usize>(
-    sections: &[Section],
-    steady: &[[f64; 2]],
+struct Sweep<'a, const N: usize> {
+    sections: &'a [Section; N],
+    steady: &'a [[f64; 2]; N],
     start: [f64; LANES],
-    samples: &mut [[f64; LANES]],
+    samples: &'a mut [[f64; LANES]],
     reverse: bool,
-) {
-    let start = f64x8::from(start);
-    let mut chain = [Stage::default(); N];
-    for (stage, (section, steady)) in chain.iter_mut().zip(sections.iter().zip(steady)) {
-        *stage = Stage {
-            section: *section,
-            state: steady.map(|s| start * f64x8::splat(s)),
-        };
-    }
-    let mut run = |sample: &mut [f64; LANES]| {
-        let output = chain
-            .iter_mut()
-            .fold(f64x8::from(*sample), |x, stage| stage.step(x));
-        *sample = output.to_array();
-    };
-    match reverse {
-        false => samples.iter_mut().for_each(&mut run),
-        true => samples.iter_mut().rev().for_each(&mut run),
-    }
 }
 
-/// A section at work: its coefficients and its two states, one signal per lane.
-#[derive(Clone, Copy)]
-struct Stage {
-    section: Section,
-    state: [f64x8; 2],
-}
+impl<const N: usize> WithSimd for Sweep<'_, N> {
+    type Output = ();
 
-impl Default for Stage {
-    fn default() -> Self {
-        Stage {
-            section: Section {
-                b: [0.0; 3],
-                a: [0.0; 2],
-            },
-            state: [f64x8::ZERO; 2],
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let (count, width) = (self.samples.len(), LANES / S::F64_LANES);
+        let samples = S::as_mut_simd_f64s(self.samples.as_flattened_mut()).0;
+        for (v, start) in S::as_simd_f64s(&self.start).0.iter().enumerate() {
+            let mut states = [[*start; 2]; N];
+            for (states, steady) in states.iter_mut().zip(self.steady) {
+                for (state, steady) in states.iter_mut().zip(steady) {
+                    *state = simd.mul_f64s(*state, simd.splat_f64s(*steady));
+                }
+            }
+            for i in 0..count {
+                let i = if self.reverse { count - 1 - i } else { i };
+                let sample = &mut samples[i * width + v];
+                let mut x = *sample;
+                for (section, state) in self.sections.iter().zip(&mut states) {
+                    x = step(simd, section, state, x);
+                }
+                *sample = x;
+            }
         }
     }
 }
 
-impl Stage {
-    #[inline(always)]
-    fn step(&mut self, x: f64x8) -> f64x8 {
-        let Section { b, a } = self.section;
-        let y = x * b[0] + self.state[0];
-        self.state[0] = x * b[1] - y * a[0] + self.state[1];
-        self.state[1] = x * b[2] - y * a[1];
-        y
-    }
+/// One section at one sample of several signals.
+#[inline(always)]
+fn step<S: Simd>(simd: S, section: &Section, state: &mut [S::f64s; 2], x: S::f64s) -> S::f64s {
+    let times = |factor: f64, x: S::f64s| simd.mul_f64s(simd.splat_f64s(factor), x);
+    let Section { b, a } = section;
+    let y = simd.add_f64s(times(b[0], x), state[0]);
+    let inner = simd.sub_f64s(times(b[1], x), times(a[0], y));
+    state[0] = simd.add_f64s(inner, state[1]);
+    state[1] = simd.sub_f64s(times(b[2], x), times(a[1], y));
+    y
 }
 
 #[cfg(test)]

@@ -16,12 +16,17 @@ pub(crate) const REACH: usize = EIGHTH.len();
 /// differences at the two ends; zero for a single sample.
 pub fn central_difference(signal: &[f64], rate_hz: f64) -> Vec<f64> {
     let last = signal.len().saturating_sub(1);
-    (0..signal.len())
-        .map(|i| {
-            let (before, after) = neighbours(i, last);
-            (signal[after] - signal[before]) * per_second(before, after, rate_hz)
-        })
-        .collect()
+    let at = |i: usize| {
+        let (before, after) = neighbours(i, last);
+        (signal[after] - signal[before]) * per_second(before, after, rate_hz)
+    };
+    // Inside, where most samples are, neighbours need no thought.
+    let scale = per_second(0, 2, rate_hz);
+    let mut all = Vec::with_capacity(signal.len());
+    all.extend((0..last.min(1)).map(at));
+    all.extend(signal.windows(3).map(|near| (near[2] - near[0]) * scale));
+    all.extend((all.len()..signal.len()).map(at));
+    all
 }
 
 /// Derivative of a signal sampled at `rate_hz`, per second. Near the two ends, where neighbours

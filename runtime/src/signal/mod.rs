@@ -10,11 +10,13 @@ mod cascade;
 mod decimate;
 mod design;
 mod difference;
+mod extent;
 mod modal;
 mod planar;
 #[cfg(test)]
 mod reference;
 mod running;
+mod sums;
 mod whiteness;
 mod zero_phase;
 
@@ -24,6 +26,7 @@ pub use decimate::Decimator;
 pub use design::{butterworth, chebyshev1};
 pub(crate) use difference::{REACH, uncertainty};
 pub use difference::{central_difference, derivative};
+pub(crate) use extent::{all_finite, extent, median, medians};
 pub use planar::{BLOCK, LANES, Planar, Signals};
 pub use running::Running;
 pub(crate) use whiteness::{autocorrelation, density};

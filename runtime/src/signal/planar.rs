@@ -1,5 +1,8 @@
 //! Many signals of equal length, and how a filter reads them: a few at a time, side by side.
 
+use pulp::Simd;
+use wide::f64x2;
+
 /// Signals that a filter treats at once.
 pub const LANES: usize = 8;
 
@@ -66,4 +69,44 @@ impl Signals for Planar {
             }
         }
     }
+}
+
+/// From signal after signal (planar, `length` samples each) to sample after sample, a register of
+/// signals side by side; lanes without a signal keep what they hold.
+#[inline(always)]
+pub(super) fn side_by_side<S: Simd>(signals: &[f64], length: usize, samples: &mut [f64]) {
+    let lanes = S::F64_LANES;
+    let full = signals.len() == lanes * length;
+    let done = match lanes {
+        8 if full => turned::<8>(signals, length, samples),
+        4 if full => turned::<4>(signals, length, samples),
+        _ => 0,
+    };
+    for (lane, signal) in signals.chunks_exact(length).enumerate() {
+        let places = samples[done * lanes..].iter_mut().skip(lane).step_by(lanes);
+        places
+            .zip(&signal[done..])
+            .for_each(|(place, x)| *place = *x);
+    }
+}
+
+/// The same for `N` signals, two samples of two of them at a time, so that neighbours are written
+/// together; returns for how many samples.
+#[inline(always)]
+fn turned<const N: usize>(signals: &[f64], length: usize, samples: &mut [f64]) -> usize {
+    let half = length / 2;
+    let twos: [&[[f64; 2]]; N] = std::array::from_fn(|lane| {
+        let signal = &signals[lane * length..][..length];
+        &signal.as_chunks().0[..half]
+    });
+    let rows = &mut samples.as_chunks_mut::<N>().0.as_chunks_mut().0[..half];
+    for (k, [first, second]) in rows.iter_mut().enumerate() {
+        for lane in (0..N).step_by(2) {
+            let square = [twos[lane][k], twos[lane + 1][k]].map(f64x2::from);
+            let [a, b] = f64x2::transpose(square).map(f64x2::to_array);
+            first[lane..lane + 2].copy_from_slice(&a);
+            second[lane..lane + 2].copy_from_slice(&b);
+        }
+    }
+    2 * half
 }

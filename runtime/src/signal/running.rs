@@ -1,15 +1,17 @@
 //! Decimation of signals that come chunk by chunk, in a memory that does not grow with the log.
+//!
+//! The rows of a chunk are one block. What the samples up to each row and those after it inside the
+//! block say is summed up at once; what the blocks behind it say reaches all of its rows through one
+//! state per signal, so that a row that waits costs one number.
 
 use std::collections::VecDeque;
+use std::ops::Range;
 
-use pulp::Arch;
+use pulp::{Arch, Simd, WithSimd};
 
-use super::modal::{Modes, PAIRS, State};
-
-/// Sums over one pole pair of a signal are kept as one row of eight numbers, so that they fill
-/// the registers of any machine; multiplications and additions are not fused, so that all machines
-/// agree to the bit.
-type Lanes = [f64; 2 * PAIRS];
+use super::modal::Modes;
+use super::planar::side_by_side;
+use super::sums::{PARTS, Sums, Table, plus, rotated, weighted};
 
 /// The zero-phase low-pass of [`super::Decimator`] and its decimation, over many signals whose
 /// samples come chunk by chunk: signals in, rows of kept samples out as soon as the samples after
@@ -20,199 +22,244 @@ pub struct Running {
     ratio: usize,
     signals: usize,
     table: Table,
-    /// Per signal: \\( \sum_{m \ge 0} p^m x_{n-m} \\) at the last row.
-    past: Vec<Lanes>,
-    /// Rows on their way out: what the past gives, one value per signal.
-    near: VecDeque<Vec<f64>>,
-    /// Of each row but the last: the weighted sums of the samples up to the next row.
-    ahead: VecDeque<Vec<Lanes>>,
-    /// Buffers of rows that went out.
-    spare: Vec<(Vec<f64>, Vec<Lanes>)>,
+    /// Per group of signals: \\( \sum_{m \ge 0} p^m x_{n-m} \\) at the last row.
+    past: Vec<f64>,
+    /// Chunks on their way out.
+    blocks: VecDeque<Block>,
+    /// Rows of the first block that went out already.
+    given: usize,
+    scratch: Scratch,
 }
 
-/// What the sums are weighted with.
-#[derive(Clone, Debug)]
-struct Table {
-    /// \\( (p^{n-1-i} \pm p^i) / 2 \\) for the first half of the samples between two rows, whose
-    /// other half mirrors them.
-    even: Vec<Lanes>,
-    odd: Vec<Lanes>,
-    /// \\( p^{n_d} \\), by which a sum ages from row to row.
-    aging: State,
-    /// \\( p \\): the future begins one sample after a row.
-    pole: State,
-    /// Weights of the modes in the result, the imaginary parts with the sign of
-    /// \\( \mathrm{Re}\,(w z) \\).
-    weights: Lanes,
-    direct: f64,
+/// The rows of a chunk, all signals side by side in groups.
+#[derive(Clone, Debug, Default)]
+struct Block {
+    rows: usize,
+    /// Per group and row: what the samples up to the end of the block give.
+    values: Vec<f64>,
+    /// Per group: \\( \sum_{m \ge 1} p^{m-1} x_{n+m} \\) over the samples of the block, at the last row
+    /// before it.
+    seen_before: Vec<f64>,
+}
+
+/// Room for one group of signals.
+#[derive(Clone, Debug, Default)]
+struct Scratch {
+    /// Per sample.
+    samples: Vec<f64>,
+    /// Per row: the weighted sums of the samples since the row before.
+    after: Vec<f64>,
 }
 
 impl Running {
     /// Decimation by `ratio` of `signals` signals. Without `modes` there is no low-pass.
     pub(super) fn new(modes: Option<&Modes>, ratio: usize, signals: usize) -> Self {
+        let lanes = Arch::new().dispatch(Width);
         Running {
             ratio,
             signals,
             table: Table::new(modes, ratio),
-            past: vec![[0.0; 2 * PAIRS]; signals],
-            near: VecDeque::from([vec![0.0; signals]]),
-            ahead: VecDeque::new(),
-            spare: Vec::new(),
+            past: vec![0.0; signals.div_ceil(lanes) * PARTS * lanes],
+            blocks: VecDeque::new(),
+            given: 0,
+            scratch: Scratch::default(),
         }
     }
 
     /// Takes the samples of the next `rows` rows: of each signal (planar) those after the last row
-    /// so far up to the last of the new rows, `rows * ratio`.
+    /// so far up to the last of the new rows, `rows * ratio`. The row at which all begins never
+    /// comes out.
     pub fn take(&mut self, chunk: &[f64], rows: usize) {
-        for _ in 0..rows {
-            let (near, ahead) = self.spare.pop().unwrap_or_default();
-            self.near.push_back(near);
-            self.ahead.push_back(ahead);
-        }
-        Arch::new().dispatch(|| self.advance(chunk, rows));
-    }
-
-    #[inline(always)]
-    fn advance(&mut self, chunk: &[f64], rows: usize) {
-        let length = rows * self.ratio;
-        let first = self.ahead.len() - rows;
-        let news = self
-            .near
-            .range_mut(first + 1..)
-            .zip(self.ahead.range_mut(first..));
-        for (row, (near, ahead)) in news.enumerate() {
-            near.resize(self.signals, 0.0);
-            ahead.resize(self.signals, [0.0; 2 * PAIRS]);
-            let samples = row * self.ratio..(row + 1) * self.ratio;
-            let outputs = near.iter_mut().zip(ahead.iter_mut());
-            for (signal, (near, ahead)) in outputs.enumerate() {
-                let x = &chunk[signal * length..][samples.clone()];
-                let (before, after) = self.table.sums(x);
-                let past = &mut self.past[signal];
-                *past = plus(before, rotated(&self.table.aging, past));
-                *near = self.table.direct * x[self.ratio - 1] + weighted(&self.table.weights, past);
-                *ahead = after;
-            }
+        if rows > 0 {
+            self.table.reach(rows);
+            Arch::new().dispatch(Take {
+                running: self,
+                chunk,
+                rows,
+            });
         }
     }
 
     /// Rows that are on their way and have at least `look_ahead` rows after them.
     pub fn ready(&self, look_ahead: usize) -> usize {
-        self.ahead.len().saturating_sub(look_ahead)
+        let rows: usize = self.blocks.iter().map(|block| block.rows).sum();
+        (rows - self.given).saturating_sub(look_ahead)
     }
 
-    /// Takes out the first `rows` rows, the very first of which (where it began) means nothing:
-    /// signal by signal (planar), `rows` values each.
+    /// Takes out the first `rows` rows: signal by signal (planar), `rows` values each.
     pub fn give(&mut self, rows: usize, out: &mut Vec<f64>) {
         out.clear();
         out.resize(rows * self.signals, 0.0);
-        Arch::new().dispatch(|| self.look_back(rows, out));
-        for _ in 0..rows {
-            self.spare
-                .extend(self.near.pop_front().zip(self.ahead.pop_front()));
-        }
-    }
-
-    #[inline(always)]
-    fn look_back(&self, rows: usize, out: &mut [f64]) {
-        let mut future = vec![[0.0; 2 * PAIRS]; self.signals];
-        for (row, (near, ahead)) in self.near.iter().zip(&self.ahead).enumerate().rev() {
-            for (signal, (future, ahead)) in future.iter_mut().zip(ahead).enumerate() {
-                let aged = rotated(&self.table.aging, future);
-                *future = plus(rotated(&self.table.pole, ahead), aged);
-                if row < rows {
-                    let from_future = weighted(&self.table.weights, future);
-                    out[signal * rows + row] = near[signal] + from_future;
-                }
-            }
-        }
-    }
-}
-
-impl Table {
-    fn new(modes: Option<&Modes>, ratio: usize) -> Self {
-        let half = ratio.div_ceil(2);
-        let Some(modes) = modes else {
-            return Table {
-                even: vec![[0.0; 2 * PAIRS]; half],
-                odd: vec![[0.0; 2 * PAIRS]; half],
-                aging: State::default(),
-                pole: State::default(),
-                weights: [0.0; 2 * PAIRS],
-                direct: 1.0,
-            };
-        };
-        let pair = |i: usize, sign: f64| -> Lanes {
-            let (later, sooner) = (modes.powers(ratio - 1 - i), modes.powers(i));
-            std::array::from_fn(|lane| {
-                let (part, k) = (lane / PAIRS, lane % PAIRS);
-                0.5 * (later[part][k] + sign * sooner[part][k])
-            })
-        };
-        let weights = std::array::from_fn(|lane| match lane / PAIRS {
-            0 => modes.weights[lane].re,
-            _ => -modes.weights[lane - PAIRS].im,
+        Arch::new().dispatch(Give {
+            running: self,
+            rows,
+            out,
         });
-        Table {
-            even: (0..half).map(|i| pair(i, 1.0)).collect(),
-            odd: (0..half).map(|i| pair(i, -1.0)).collect(),
-            aging: modes.powers(ratio),
-            pole: modes.powers(1),
-            weights,
-            direct: modes.direct,
+        self.given += rows;
+        while let Some(block) = self.blocks.front().filter(|block| block.rows <= self.given) {
+            self.given -= block.rows;
+            self.blocks.pop_front();
         }
     }
+}
 
-    /// \\( \sum_i p^{n-1-i} x_i \\) and \\( \sum_i p^i x_i \\).
-    #[expect(
-        clippy::needless_range_loop,
-        reason = "the index names a lane of several arrays"
-    )]
+struct Width;
+
+impl WithSimd for Width {
+    type Output = usize;
+
     #[inline(always)]
-    fn sums(&self, x: &[f64]) -> (Lanes, Lanes) {
-        let (mut even, mut odd) = ([0.0; 2 * PAIRS], [0.0; 2 * PAIRS]);
-        let half = x.len() / 2;
-        let pairs = x[..half].iter().zip(x.iter().rev());
-        for ((a, b), (e, o)) in pairs.zip(self.even.iter().zip(&self.odd)) {
-            let (sum, difference) = (a + b, a - b);
-            for lane in 0..2 * PAIRS {
-                even[lane] += e[lane] * sum;
-                odd[lane] += o[lane] * difference;
-            }
-        }
-        if x.len() % 2 == 1 {
-            for lane in 0..2 * PAIRS {
-                even[lane] += self.even[half][lane] * x[half];
-            }
-        }
-        let minus = std::array::from_fn(|lane| even[lane] - odd[lane]);
-        (plus(even, odd), minus)
+    fn with_simd<S: Simd>(self, _: S) -> usize {
+        S::F64_LANES
     }
 }
 
-/// The products of complex numbers with those of `state`.
-#[inline(always)]
-fn rotated(by: &State, state: &Lanes) -> Lanes {
-    let mut product = [0.0; 2 * PAIRS];
-    for k in 0..PAIRS {
-        let (re, im) = (state[k], state[k + PAIRS]);
-        product[k] = by[0][k] * re - by[1][k] * im;
-        product[k + PAIRS] = by[0][k] * im + by[1][k] * re;
+/// [`Running::take`] on the vectors of a machine.
+struct Take<'a> {
+    running: &'a mut Running,
+    chunk: &'a [f64],
+    rows: usize,
+}
+
+impl WithSimd for Take<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Take {
+            running,
+            chunk,
+            rows,
+        } = self;
+        let length = rows * running.ratio;
+        let groups = running.signals.div_ceil(S::F64_LANES);
+        let mut block = Block {
+            rows,
+            values: vec![0.0; groups * rows * S::F64_LANES],
+            seen_before: vec![0.0; groups * PARTS * S::F64_LANES],
+        };
+        let Scratch { samples, after } = &mut running.scratch;
+        samples.resize(length * S::F64_LANES, 0.0);
+        after.resize(rows * PARTS * S::F64_LANES, 0.0);
+        let past = S::as_mut_simd_f64s(&mut running.past).0;
+        let places = S::as_mut_simd_f64s(&mut block.values)
+            .0
+            .chunks_exact_mut(rows);
+        let seen = S::as_mut_simd_f64s(&mut block.seen_before).0;
+        let states = past
+            .as_chunks_mut()
+            .0
+            .iter_mut()
+            .zip(seen.as_chunks_mut().0);
+        let signals = chunk.chunks(length * S::F64_LANES);
+        for (signals, (values, (past, seen))) in signals.zip(places.zip(states)) {
+            side_by_side::<S>(signals, length, samples);
+            let samples = S::as_simd_f64s(samples).0.chunks_exact(running.ratio);
+            let after = S::as_mut_simd_f64s(after).0.as_chunks_mut().0;
+            forward(simd, &running.table, samples, past, values, after);
+            *seen = backward(simd, &running.table, after, values);
+        }
+        running.blocks.push_back(block);
     }
-    product
 }
 
+/// Runs along the rows of a group of signals: what the samples up to each row give, and the sums
+/// that the rows before will ask for.
 #[inline(always)]
-fn plus(a: Lanes, b: Lanes) -> Lanes {
-    std::array::from_fn(|lane| a[lane] + b[lane])
+fn forward<'a, S: Simd>(
+    simd: S,
+    table: &Table,
+    samples: impl Iterator<Item = &'a [S::f64s]>,
+    past: &mut Sums<S>,
+    values: &mut [S::f64s],
+    after: &mut [Sums<S>],
+) {
+    for (x, (value, after)) in samples.zip(values.iter_mut().zip(after)) {
+        let (before, later) = table.sums(simd, x);
+        *past = plus(simd, &before, &rotated(simd, &table.aging, past));
+        let direct = simd.mul_f64s(simd.splat_f64s(table.direct), x[x.len() - 1]);
+        *value = simd.add_f64s(direct, weighted(simd, &table.weights, past));
+        *after = later;
+    }
 }
 
-/// Sum of the products, in a fixed order that leaves lanes independent as long as possible.
+/// Runs back along the rows: adds what the samples after each row give as far as the block reaches,
+/// and returns their sums as the last row before the block sees them.
 #[inline(always)]
-fn weighted(weights: &Lanes, state: &Lanes) -> f64 {
-    let products: Lanes = std::array::from_fn(|lane| weights[lane] * state[lane]);
-    let half: [f64; PAIRS] = std::array::from_fn(|k| products[k] + products[k + PAIRS]);
-    (half[0] + half[2]) + (half[1] + half[3])
+fn backward<S: Simd>(simd: S, table: &Table, after: &[Sums<S>], values: &mut [S::f64s]) -> Sums<S> {
+    let mut future = [simd.splat_f64s(0.0); PARTS];
+    for (value, after) in values.iter_mut().zip(after).rev() {
+        *value = simd.add_f64s(*value, weighted(simd, &table.echo[0], &future));
+        future = plus(simd, after, &rotated(simd, &table.aging, &future));
+    }
+    future
+}
+
+/// [`Running::give`] on the vectors of a machine.
+struct Give<'a> {
+    running: &'a Running,
+    rows: usize,
+    out: &'a mut [f64],
+}
+
+impl WithSimd for Give<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(mut self, simd: S) {
+        let Running { blocks, given, .. } = self.running;
+        let wanted = *given..*given + self.rows;
+        let mut starts = Vec::with_capacity(blocks.len());
+        let mut end = 0;
+        for block in blocks {
+            starts.push(end);
+            end += block.rows;
+        }
+        // What the samples behind a block give, at its last row.
+        let groups = self.running.signals.div_ceil(S::F64_LANES);
+        let mut beyond = vec![[simd.splat_f64s(0.0); PARTS]; groups];
+        for (block, start) in blocks.iter().zip(starts).rev() {
+            let part = wanted.start.max(start)..wanted.end.min(start + block.rows);
+            if !part.is_empty() {
+                let within = part.start - start..part.end - start;
+                self.hand_out(simd, block, &beyond, within, part.start - wanted.start);
+            }
+            let seen = S::as_simd_f64s(&block.seen_before).0.as_chunks().0;
+            for (beyond, seen) in beyond.iter_mut().zip(seen) {
+                let aged = rotated(simd, &self.running.table.ages[block.rows], beyond);
+                *beyond = plus(simd, seen, &aged);
+            }
+        }
+    }
+}
+
+impl Give<'_> {
+    /// Writes the rows `within` a block as the rows from `first` on.
+    #[inline(always)]
+    fn hand_out<S: Simd>(
+        &mut self,
+        simd: S,
+        block: &Block,
+        beyond: &[Sums<S>],
+        within: Range<usize>,
+        first: usize,
+    ) {
+        let echo = &self.running.table.echo[..block.rows];
+        let values = S::as_simd_f64s(&block.values).0.chunks_exact(block.rows);
+        let out = self.out.chunks_mut(self.rows * S::F64_LANES);
+        for (out, (values, beyond)) in out.zip(values.zip(beyond)) {
+            let rows = values.iter().zip(echo.iter().rev()).enumerate();
+            for (row, (value, echo)) in rows.skip(within.start).take(within.len()) {
+                let value = simd.add_f64s(*value, weighted(simd, echo, beyond));
+                let place = first + row - within.start;
+                let values: &[f64] = bytemuck::cast_slice(std::slice::from_ref(&value));
+                let places = out[place..].iter_mut().step_by(self.rows);
+                places
+                    .zip(values)
+                    .for_each(|(place, value)| *place = *value);
+            }
+        }
+    }
 }
 
 #[cfg(test)]
@@ -232,11 +279,11 @@ mod tests {
             .collect()
     }
 
-    /// All rows of a running decimation, fed in chunks of `rows` rows, first row meaningless.
+    /// All rows of a running decimation, fed in chunks of `rows` rows; the first row is lost.
     fn running(decimator: &Decimator, signals: &[Vec<f64>], rows: usize) -> Vec<Vec<f64>> {
         let (kept, ratio) = (decimator.kept(LEN), decimator.ratio());
         let mut running = decimator.running(signals.len());
-        let mut all = vec![Vec::new(); signals.len()];
+        let mut all = vec![vec![f64::NAN]; signals.len()];
         let (mut at, mut out) = (0, Vec::new());
         let mut give = |running: &mut super::Running, rows: usize| {
             running.give(rows, &mut out);

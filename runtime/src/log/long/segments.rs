@@ -6,7 +6,7 @@
 
 use std::ops::Range;
 
-use rayon::iter::{IntoParallelIterator, ParallelIterator};
+use rayon::iter::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
 
 use super::super::checks::Motion;
 use super::super::columns::Layout;
@@ -17,6 +17,7 @@ use super::super::speed::Pair;
 use super::super::table::Table;
 use super::Robot;
 use super::spooling::Rows;
+use crate::signal::extent;
 
 /// Rows of a segment.
 const SEGMENT: usize = 1 << 15;
@@ -47,25 +48,34 @@ pub(super) fn settle(
 ) -> Found<Settled> {
     let starts: Vec<usize> = (0..rows.spool.rows).step_by(SEGMENT).collect();
     let at_once = rayon::current_num_threads().clamp(1, MOST_AT_ONCE);
+    let settle = |(&start, room): (&usize, &mut Vec<Vec<f64>>)| {
+        Segment::read(rows, start, layout, room)?.settle(layout, robot)
+    };
+    // Series that are not needed any more, for each segment that is worked on.
+    let mut rooms: Vec<Vec<Vec<f64>>> = vec![Vec::new(); at_once];
     let mut whole = Whole::default();
     // Values are replaced only when the next segments, which overlap, have been read.
-    let mut settled: Vec<Segment> = Vec::new();
+    let mut changed: Vec<Segment> = Vec::new();
     for starts in starts.chunks(at_once) {
-        let read = |&start: &usize| Segment::read(rows, start, layout);
-        let segments: Vec<Segment> = starts.iter().map(read).collect::<Found<_>>()?;
-        settled
-            .iter()
-            .try_for_each(|segment| segment.write(rows, layout))?;
-        let settle = |segment: Segment| segment.settle(layout, robot);
-        settled = segments.into_par_iter().map(settle).collect::<Found<_>>()?;
-        for segment in &mut settled {
-            whole.take(segment);
+        let segments = starts.par_iter().zip(&mut rooms).map(settle);
+        let settled: Vec<Segment> = segments.collect::<Found<_>>()?;
+        replace(&changed, rows, layout)?;
+        changed.clear();
+        for (mut segment, room) in settled.into_iter().zip(&mut rooms) {
+            whole.take(&mut segment);
+            match segment.changed {
+                true => changed.push(segment),
+                false => *room = segment.into_series(),
+            }
         }
     }
-    settled
-        .iter()
-        .try_for_each(|segment| segment.write(rows, layout))?;
+    replace(&changed, rows, layout)?;
     Ok(whole.report(rows.first_row, robot, encoder_resolution, warnings))
+}
+
+fn replace(segments: &[Segment], rows: &Rows, layout: &Layout) -> Found<()> {
+    let mut segments = segments.iter();
+    segments.try_for_each(|segment| segment.write(rows, layout))
 }
 
 /// Some rows and their surroundings.
@@ -79,15 +89,25 @@ struct Segment {
     qd: Option<Vec<Vec<f64>>>,
     tau: Option<Vec<Vec<f64>>>,
     findings: Vec<Finding>,
+    /// Smallest and largest values of the rows that are settled here: positions, torques.
+    ranges: [Vec<(f64, f64)>; 2],
     changed: bool,
 }
 
 impl Segment {
-    fn read(rows: &Rows, start: usize, layout: &Layout) -> Found<Segment> {
+    fn read(
+        rows: &Rows,
+        start: usize,
+        layout: &Layout,
+        room: &mut Vec<Vec<f64>>,
+    ) -> Found<Segment> {
         let first = start.saturating_sub(MARGIN);
         let end = (start + SEGMENT).min(rows.spool.rows);
         let last = (end + MARGIN).min(rows.spool.rows);
-        let column = |channel| rows.spool.read(channel, first..last);
+        let column = |channel| {
+            let room = room.pop().unwrap_or_default();
+            rows.spool.read_into(channel, first..last, room)
+        };
         let columns = (0..layout.channels.len()).map(column);
         Ok(Segment {
             core: start - first..end - first,
@@ -100,6 +120,7 @@ impl Segment {
             qd: None,
             tau: None,
             findings: Vec::new(),
+            ranges: Default::default(),
             changed: false,
         })
     }
@@ -116,7 +137,7 @@ impl Segment {
             .map(|finding| within(finding, self.first, &self.core))
             .collect();
         let motor = layout.q.motor || layout.tau.as_ref().is_some_and(|tau| tau.motor);
-        Ok(Segment {
+        let mut settled = Segment {
             table: rows.table,
             q: rows.q,
             qd: rows.qd,
@@ -124,14 +145,14 @@ impl Segment {
             changed: motor || findings.iter().any(|finding| !finding.ranges.is_empty()),
             findings,
             ..self
-        })
+        };
+        let tau = settled.tau.as_deref().unwrap_or_default();
+        settled.ranges = [&settled.q[..], tau].map(|series| settled.extents(series));
+        Ok(settled)
     }
 
-    /// Replaces the rows in the spool, if they changed.
+    /// Replaces the rows in the spool.
     fn write(&self, rows: &Rows, layout: &Layout) -> Found<()> {
-        if !self.changed {
-            return Ok(());
-        }
         let groups = [
             (Some(&layout.q), Some(&self.q)),
             (layout.qd.as_ref(), self.qd.as_ref()),
@@ -145,6 +166,38 @@ impl Segment {
             }
         }
         Ok(())
+    }
+}
+
+impl Segment {
+    fn into_series(self) -> Vec<Vec<f64>> {
+        let optional = [self.qd, self.tau].into_iter().flatten().flatten();
+        let all = self.table.columns.into_iter().chain(self.q).chain(optional);
+        all.filter(|series| !series.is_empty()).collect()
+    }
+
+    /// The rows without their surroundings.
+    fn core<'a>(&self, series: &'a [f64]) -> &'a [f64] {
+        series.get(self.core.clone()).unwrap_or_default()
+    }
+
+    fn extents(&self, series: &[Vec<f64>]) -> Vec<(f64, f64)> {
+        series.iter().map(|one| extent(self.core(one))).collect()
+    }
+
+    fn lively(&self) -> Lively {
+        let cores = |series: &[Vec<f64>]| -> Vec<Vec<f64>> {
+            series.iter().map(|one| self.core(one).to_vec()).collect()
+        };
+        Lively {
+            table: Table {
+                first_row: self.table.first_row + self.core.start,
+                columns: vec![self.core(self.table.stamps()).to_vec()],
+            },
+            q: cores(&self.q),
+            qd: self.qd.as_deref().map(cores),
+            tau: self.tau.as_deref().map(cores),
+        }
     }
 }
 
@@ -208,33 +261,13 @@ impl Whole {
                 all.append(found);
             }
         }
-        let core = |series: &Vec<f64>| -> Vec<f64> {
-            series
-                .get(segment.core.clone())
-                .unwrap_or_default()
-                .to_vec()
-        };
-        let cores = |series: &[Vec<f64>]| series.iter().map(core).collect::<Vec<_>>();
-        let q = cores(&segment.q);
-        let motion: f64 = q
-            .iter()
-            .map(|q| extent(q))
-            .map(|(low, high)| high - low)
-            .sum();
-        let tau = segment.tau.as_deref().map(cores);
-        widen(&mut self.q, &q);
-        widen(&mut self.tau, tau.as_deref().unwrap_or_default());
-        if self
-            .liveliest
-            .as_ref()
-            .is_none_or(|(most, _)| motion > *most)
-        {
-            let table = Table {
-                first_row: segment.table.first_row + segment.core.start,
-                columns: vec![core(&segment.table.stamps().to_vec())],
-            };
-            let qd = segment.qd.as_deref().map(cores);
-            self.liveliest = Some((motion, Lively { table, q, qd, tau }));
+        let [q, tau] = &segment.ranges;
+        widen(&mut self.q, q);
+        widen(&mut self.tau, tau);
+        let motion: f64 = q.iter().map(|(low, high)| high - low).sum();
+        let most = self.liveliest.as_ref().map(|(most, _)| *most);
+        if most.is_none_or(|most| motion > most) {
+            self.liveliest = Some((motion, segment.lively()));
         }
     }
 
@@ -270,22 +303,13 @@ impl Whole {
     }
 }
 
-fn extent(values: &[f64]) -> (f64, f64) {
-    let low = values.iter().copied().fold(f64::INFINITY, f64::min);
-    (
-        low,
-        values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
-    )
-}
-
-fn widen(ranges: &mut Vec<(f64, f64)>, series: &[Vec<f64>]) {
+fn widen(ranges: &mut Vec<(f64, f64)>, more: &[(f64, f64)]) {
     ranges.resize(
-        series.len().max(ranges.len()),
+        more.len().max(ranges.len()),
         (f64::INFINITY, f64::NEG_INFINITY),
     );
-    for (range, series) in ranges.iter_mut().zip(series) {
-        let (low, high) = extent(series);
-        *range = (range.0.min(low), range.1.max(high));
+    for (range, (low, high)) in ranges.iter_mut().zip(more) {
+        *range = (range.0.min(*low), range.1.max(*high));
     }
 }
 

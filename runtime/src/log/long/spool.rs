@@ -25,7 +25,17 @@ pub(super) struct Spool {
 impl Spool {
     /// The values of a column in these rows.
     pub fn read(&self, column: usize, rows: Range<usize>) -> Found<Vec<f64>> {
-        let mut values = vec![0.0; rows.len()];
+        self.read_into(column, rows, Vec::new())
+    }
+
+    /// The same in a series that is not needed any more: memory that is known already costs less.
+    pub fn read_into(
+        &self,
+        column: usize,
+        rows: Range<usize>,
+        mut values: Vec<f64>,
+    ) -> Found<Vec<f64>> {
+        values.resize(rows.len(), 0.0);
         self.each_piece(column, rows, |file, piece| {
             let values = values.get_mut(piece).unwrap_or_default();
             file.read_exact(bytemuck::cast_slice_mut(values))
@@ -86,8 +96,10 @@ impl Spool {
 impl Stamps for Spool {
     fn each(&self, see: &mut dyn FnMut(&[f64])) -> Found<()> {
         const PIECE: usize = 16 * BLOCK;
+        let mut stamps = Vec::new();
         for start in (0..self.rows).step_by(PIECE) {
-            see(&self.read(0, start..(start + PIECE).min(self.rows))?);
+            stamps = self.read_into(0, start..(start + PIECE).min(self.rows), stamps)?;
+            see(&stamps);
         }
         Ok(())
     }
