@@ -4,7 +4,7 @@ use idim::codegen::builder::read_texts;
 use idim::codegen::describe::{Description, Geometry};
 use idim::runtime::log::{Controller, Reference};
 use idim::runtime::simulate::{Grid, Trajectory, inverse_dynamics};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::hidden::{Effect, Hidden};
 use super::logs::{Noise, Simulated, controller, simulate};
@@ -16,7 +16,7 @@ use super::random::Random;
 use super::robots::{Described, KINDS, Rating, describe};
 
 /// What a case is for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Category {
     /// One effect of the catalogue.
@@ -30,12 +30,12 @@ pub enum Category {
 }
 
 /// What is known of a case that no diagnosis may read.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Truth {
     /// Its name.
     pub case: String,
     /// Its kind of robot.
-    pub robot: &'static str,
+    pub robot: String,
     /// What it is for.
     pub category: Category,
     /// What is hidden, the strongest first.
@@ -51,13 +51,16 @@ pub struct Truth {
     pub rmse_null: Vec<f64>,
     pub rmse_oracle: Vec<f64>,
     pub rmse_floor: Vec<f64>,
+    /// Position error of the true robot, simulated without noise along the validation motion, rad or
+    /// m, by joint.
+    pub position_best: Vec<f64>,
 }
 
 /// A hidden effect.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct TrueEffect {
     /// Name.
-    pub effect: &'static str,
+    pub effect: String,
     /// Joints, from 1; empty for the whole robot.
     pub joints: Vec<usize>,
     /// Standard deviations that it gains beyond the other.
@@ -285,6 +288,26 @@ impl Stage {
         })
     }
 
+    /// Position error of the robot itself without noise; none where it cannot be simulated.
+    fn position(&self, scene: &Scene, valid: &Simulated, random: &mut Random) -> Vec<f64> {
+        let quiet = Noise {
+            white: vec![0.0; valid.q.len()],
+            slow: vec![(0.0, 1.0); valid.q.len()],
+            ..scene.noise
+        };
+        let plan = (&scene.motions[1], &scene.controller);
+        let own = (&self.machine, self.effects.as_slice());
+        let Ok(again) = simulate(own, &scene.bare, plan, &quiet, random) else {
+            return Vec::new();
+        };
+        let pairs = again.q.iter().zip(&valid.q);
+        let rms = |(a, b): (&Vec<f64>, &Vec<f64>)| {
+            let squares = a.iter().zip(b).map(|(a, b)| (a - b).powi(2));
+            (squares.sum::<f64>() / a.len() as f64).sqrt()
+        };
+        pairs.map(rms).collect()
+    }
+
     /// Of the whole structure.
     fn evidence(&self, scene: &Scene) -> Result<f64, Failure> {
         let truth = Oracle::new(&self.truth, &self.effects);
@@ -324,6 +347,7 @@ impl Stage {
         random: &mut Random,
     ) -> Result<Case, Failure> {
         let valid = scene.log(&self.machine, &self.effects, 1, random)?;
+
         let (null, truth) = (
             Oracle::new(&scene.bare, &[]),
             Oracle::new(&self.truth, &self.effects),
@@ -337,7 +361,7 @@ impl Stage {
             .iter()
             .zip(self.evidences(&scene)?)
             .map(|(effect, evidence)| TrueEffect {
-                effect: effect.name,
+                effect: effect.name.into(),
                 joints: effect.joints.iter().map(|joint| joint + 1).collect(),
                 evidence,
                 hidden: format!("{:?}", effect.hidden),
@@ -347,7 +371,7 @@ impl Stage {
         Ok(Case {
             truth: Truth {
                 case: format!("case_{number:04}"),
-                robot: scene.described.kind,
+                robot: scene.described.kind.into(),
                 category,
                 effects,
                 repeats: scene.repeats,
@@ -361,6 +385,7 @@ impl Stage {
                 rmse_null,
                 rmse_oracle,
                 rmse_floor: rmse(&valid.noise, &zero)?,
+                position_best: self.position(&scene, &valid, random),
             },
             described: scene.described,
             controller: scene.controller,

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use idim::runtime::log;
 
-use super::draw::Case;
+use super::draw::{Case, Truth};
 use super::logs::{Simulated, companion};
 use super::machine::Failure;
 use super::motion::RATE_HZ;
@@ -26,6 +26,18 @@ pub fn write(folder: &Path, case: &Case) -> Result<(), Failure> {
     let text = serde_json::to_string_pretty(&case.truth)?;
     fs::write(truth.join(format!("{}.json", case.truth.case)), text)?;
     Ok(())
+}
+
+/// The truth of the cases in a folder, in the order of their names.
+pub fn truths(folder: &Path) -> Result<Vec<Truth>, Failure> {
+    let mut all = Vec::new();
+    for entry in fs::read_dir(folder.join("truth"))? {
+        all.push(serde_json::from_str::<Truth>(&fs::read_to_string(
+            entry?.path(),
+        )?)?);
+    }
+    all.sort_by(|a, b| a.case.cmp(&b.case));
+    Ok(all)
 }
 
 fn write_log(path: &Path, simulated: &Simulated) -> Result<(), Failure> {

@@ -1,5 +1,6 @@
 //! Robots with hidden effects: drawn, simulated, diagnosed, scored.
 
+pub mod answer;
 pub mod draw;
 pub mod files;
 mod hidden;
@@ -11,5 +12,7 @@ mod outside;
 mod propose;
 mod random;
 mod robots;
+pub mod score;
+pub mod table;
 
 pub use machine::Failure;
