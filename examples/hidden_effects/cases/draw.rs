@@ -385,7 +385,10 @@ impl Stage {
                 rmse_null,
                 rmse_oracle,
                 rmse_floor: rmse(&valid.noise, &zero)?,
-                position_best: self.position(&scene, &valid, random),
+                position_best: match self.effects.is_empty() {
+                    true => Vec::new(),
+                    false => self.position(&scene, &valid, random),
+                },
             },
             described: scene.described,
             controller: scene.controller,

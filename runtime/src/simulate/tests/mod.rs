@@ -7,4 +7,5 @@ mod friction;
 mod loops;
 mod model;
 mod parting;
+mod plant;
 mod refused;
