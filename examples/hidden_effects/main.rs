@@ -13,8 +13,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use cases::machine::Failure;
 use cases::score::Scored;
-use cases::{Failure, answer, draw, files, table};
+use cases::{answer, draw, files, table};
 
 /// What is to be done.
 #[derive(Clone, Copy, PartialEq)]

@@ -185,7 +185,7 @@ impl Scene {
         Ok(Scene {
             controller: controller(&described.ratings, random),
             noise: Noise::draw(&described.ratings, random),
-            host: host(&individual, &own, &described.ratings, &motions[0])?,
+            host: host_of(&individual, &own, &described.ratings, &motions[0])?,
             described,
             nominal,
             individual,
@@ -399,7 +399,8 @@ impl Stage {
     }
 }
 
-fn host(
+/// What has to be known of an individual along its training motion.
+pub fn host_of(
     description: &Description,
     machine: &Machine,
     ratings: &[Rating],

@@ -3,16 +3,14 @@
 pub mod answer;
 pub mod draw;
 pub mod files;
-mod hidden;
-mod logs;
-mod machine;
+pub mod hidden;
+pub mod logs;
+pub mod machine;
 mod motion;
 mod oracle;
 mod outside;
-mod propose;
-mod random;
-mod robots;
+pub mod propose;
+pub mod random;
+pub mod robots;
 pub mod score;
 pub mod table;
-
-pub use machine::Failure;
