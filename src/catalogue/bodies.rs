@@ -7,6 +7,7 @@ use idim_codegen::mechanism::inertia::NAMES;
 
 use super::along::Along;
 use super::evaluate::Motion;
+use super::geometry::flange_axes;
 use super::reach::plain;
 use super::{Effect, Effects, Reach};
 
@@ -145,23 +146,33 @@ fn combined(axes: &[Vec<Vec<f64>>; 3], direction: [f64; 3]) -> Vec<(usize, Vec<f
 pub(super) static EXTERNAL_FORCE: Effect = Effect {
     entry: Entry {
         name: "external_force",
-        meaning: "constant force on the flange, in the axes of frame 0",
+        meaning: "constant force on the flange, in the axes of frame 0 or of the flange",
         formula: "-J_v^T (FX, FY, FZ)",
         parameters: &[("FX", "N"), ("FY", "N"), ("FZ", "N")],
-        shape: &[],
+        shape: &[("axes", "0: frame 0, 1: flange")],
         confused_with: &["payload", "base_tilt"],
         experiment: "the same pose twice, the hose moved in between",
         kind: EntryKind::Static,
         hidden_by_parameters: false,
     },
-    hypotheses: whole_robot,
-    columns: external_force,
+    hypotheses: |effects, reach| {
+        let axes = |hypothesis: Hypothesis| Hypothesis {
+            grid: vec![vec![0.0], vec![1.0]],
+            bounds: vec![0.0..1.0],
+            ..hypothesis
+        };
+        whole_robot(effects, reach).into_iter().map(axes).collect()
+    },
+    columns: |along, _, shape| match shape {
+        [axes] if *axes > 0.5 => force_with_flange(along),
+        _ => force(along, along.effects.gravity()),
+    },
     described: &[],
     implausible: |_| None,
 };
 
 /// A force on a point is the weight of a unit mass there under unit gravity along the force.
-fn external_force(along: &Along<'_>, _: &[usize], _: &[f64]) -> Vec<TorqueColumn> {
+fn force(along: &Along<'_>, gravity: &[super::Linear; 3]) -> Vec<TorqueColumn> {
     let robot = &along.effects.robot.mechanism;
     let Some(last) = robot.joints.len().checked_sub(1) else {
         return Vec::new();
@@ -178,11 +189,28 @@ fn external_force(along: &Along<'_>, _: &[usize], _: &[f64]) -> Vec<TorqueColumn
         unit: "N",
         torque: model.torque(&still, &x).into_iter().enumerate().collect(),
     };
-    ["FX", "FY", "FZ"]
-        .into_iter()
-        .zip(along.effects.gravity())
-        .map(along_axis)
-        .collect()
+    let names = ["FX", "FY", "FZ"].into_iter();
+    names.zip(gravity).map(along_axis).collect()
+}
+
+/// A force that turns with the flange.
+fn force_with_flange(along: &Along<'_>) -> Vec<TorqueColumn> {
+    let fixed = force(along, along.effects.gravity_of_root());
+    let mechanism = &along.effects.robot.mechanism;
+    let q = along.signals.q;
+    let axes: Vec<_> = (0..along.len())
+        .map(|i| flange_axes(mechanism, |joint| q[joint][i]))
+        .collect();
+    let mut turned = fixed.clone();
+    for (axis, column) in turned.iter_mut().enumerate() {
+        for (place, (_, torque)) in column.torque.iter_mut().enumerate() {
+            for (i, (value, axes)) in torque.iter_mut().zip(&axes).enumerate() {
+                let part = |from: usize| axes[(from, axis)] * fixed[from].torque[place].1[i];
+                *value = (0..3).map(part).sum();
+            }
+        }
+    }
+    turned
 }
 
 pub(super) static LINK_LENGTH: Effect = Effect {

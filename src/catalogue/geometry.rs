@@ -7,7 +7,9 @@ use idim_codegen::derive::{self, ParameterKind};
 use idim_codegen::describe::{self, Description, Geometry};
 use idim_codegen::expr::Graph;
 use idim_codegen::mechanism::inertia::NAMES;
-use idim_codegen::mechanism::{Mechanism, Standard};
+use idim_codegen::mechanism::pose::{about_x, about_z};
+use idim_codegen::mechanism::{JointKind, Mechanism, Standard};
+use nalgebra::{Matrix3, Rotation3, Vector3};
 
 use super::evaluate::{Linear, Motion};
 
@@ -46,6 +48,42 @@ pub(super) fn unit_gravity(description: &Description) -> [Linear; 3] {
         // At rest only first moments and masses weigh anything.
         rigid(&Mechanism::new(&turned), |_, place| place >= 6)
     })
+}
+
+/// The same along the axes of the frame that the first joint of the last link's chain stands in.
+pub(super) fn unit_gravity_of_root(mechanism: &Mechanism) -> [Linear; 3] {
+    [0, 1, 2].map(|axis| {
+        let mut gravity = [0.0; 3];
+        gravity[axis] = 1.0;
+        let mut turned = mechanism.clone();
+        let first = turned.joints.iter_mut().filter(|j| j.parent.is_none());
+        first.for_each(|joint| joint.gravity = Some(gravity));
+        rigid(&turned, |_, place| place >= 6)
+    })
+}
+
+/// Axes of the flange, the last body of the last link, in the frame that the first joint of its
+/// chain stands in, at joint positions q.
+pub(super) fn flange_axes(mechanism: &Mechanism, q: impl Fn(usize) -> f64) -> Matrix3<f64> {
+    let Some(last) = mechanism.joints.len().checked_sub(1) else {
+        return Matrix3::identity();
+    };
+    let body = mechanism.joints[last].bodies.last();
+    let mut axes = body.map_or(Matrix3::identity(), |body| body.pose.rotation);
+    let mut link = Some(last);
+    while let Some(number) = link {
+        let joint = &mechanism.joints[number];
+        let turned = match joint.kind {
+            JointKind::Revolute => {
+                Rotation3::from_axis_angle(&Vector3::z_axis(), q(number)).into_inner()
+            }
+            JointKind::Prismatic => Matrix3::identity(),
+        };
+        let from = about_z(joint.gamma) * about_x(joint.alpha) * about_z(joint.theta);
+        axes = from * turned * axes;
+        link = joint.parent;
+    }
+    axes
 }
 
 /// The standard parameters that stand behind base parameters: those of the description where it

@@ -87,8 +87,9 @@ pub(super) static JOINT_ELASTICITY: Effect = Effect {
     entry: Entry {
         name: "joint_elasticity",
         meaning: "a gear that yields: the link follows the drive behind a resonance",
-        formula: "EL (y - tau_rigid), y'' + 2 damping w y' + w^2 (y - tau_rigid) = 0, w = 2 pi f",
-        parameters: &[("EL", "1")],
+        formula: "d(tau_m)/dq_j along -CE y and its time derivatives, y'' + 2 damping w y' + \
+                  w^2 (y - tau_rigid) = 0, w = 2 pi f",
+        parameters: &[("CE", "rad/(N m)")],
         shape: &[("f", "Hz"), ("damping", "1")],
         confused_with: &["rotor_inertia", "time_shift", "link_length"],
         experiment: "a chirp; a test with the output locked",
@@ -99,8 +100,7 @@ pub(super) static JOINT_ELASTICITY: Effect = Effect {
     columns: elasticity,
     described: &[],
     implausible: |values| match values.first() {
-        Some(part) if *part < 0.0 => Some("the stiffness of the joint would be negative"),
-        Some(part) if *part > 5.0 => Some("the link would swing more than its resonance makes it"),
+        Some(yields) if *yields < 0.0 => Some("the stiffness of the joint would be negative"),
         _ => None,
     },
 };
@@ -121,14 +121,27 @@ fn elasticity_grid(_: &Effects, reach: &Reach<'_>) -> Vec<Hypothesis> {
     reach.moving().map(on_joint).collect()
 }
 
+/// The link lies behind its drive by what the gear yields: the torque that it carries, which swings at
+/// the resonance of the link on the locked drive, over the stiffness. For one link alone this is
+/// exact: J qdd (1 - (J/k) s^2 G(s)) = J qdd G(s), G = w^2 / (s^2 + w^2), w^2 = k/J.
 fn elasticity(along: &Along<'_>, joints: &[usize], shape: &[f64]) -> Vec<TorqueColumn> {
     let (&[joint], &[f, damping]) = (joints, shape) else {
         return Vec::new();
     };
     let rigid = &along.signals.tau_rigid[joint];
-    let swung = resonance(rigid, along.signals.rate_hz, TAU * f, damping);
-    let torque = swung.iter().zip(rigid).map(|(y, u)| y - u).collect();
-    vec![along.column("EL", "1", joint, torque)]
+    let position = resonance(rigid, along.signals.rate_hz, TAU * f, damping);
+    let position: Vec<f64> = position.iter().map(|y| -y).collect();
+    let velocity = along.rate(&position);
+    let by = Displacement {
+        acceleration: along.rate(&velocity),
+        position,
+        velocity,
+    };
+    vec![TorqueColumn {
+        name: format!("CE{}", joint + 1),
+        unit: along.by_kind(joint, "rad/(N m)", "m/N"),
+        torque: along.displaced(joint, &by),
+    }]
 }
 
 /// y'' + 2 damping w y' + w^2 y = w^2 u from rest at the first sample: exact for an input that is

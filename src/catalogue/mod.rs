@@ -93,6 +93,8 @@ pub struct Effects {
     tool: OnceLock<Linear>,
     /// Standard columns under unit gravity along x, y, z of frame 0.
     gravity: OnceLock<[Linear; 3]>,
+    /// The same along the axes that the first joint stands in.
+    gravity_of_root: OnceLock<[Linear; 3]>,
     /// Per joint, the robot with another length there.
     lengths: Vec<OnceLock<Option<Length>>>,
 }
@@ -114,6 +116,7 @@ impl Effects {
             smooth: smooth(robot),
             tool: OnceLock::new(),
             gravity: OnceLock::new(),
+            gravity_of_root: OnceLock::new(),
             lengths: robot
                 .mechanism
                 .joints
@@ -146,6 +149,11 @@ impl Effects {
     fn gravity(&self) -> &[Linear; 3] {
         self.gravity
             .get_or_init(|| geometry::unit_gravity(&self.robot.description))
+    }
+
+    fn gravity_of_root(&self) -> &[Linear; 3] {
+        self.gravity_of_root
+            .get_or_init(|| geometry::unit_gravity_of_root(&self.robot.mechanism))
     }
 
     fn length(&self, joint: usize) -> Option<&Length> {

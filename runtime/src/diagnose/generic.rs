@@ -89,11 +89,8 @@ pub(super) fn columns(
             of(&|t| side[t] * angle(t).cos());
         }
     }
-    for power in 1..=2 {
-        of(&|t| s[t].powi(power));
-        of(&|t| s[t].powi(power) * side[t]);
-        of(&|t| s[t].powi(power) * v[t]);
-    }
+    all.extend(drifts(&s, &side, &v));
+    let mut of = |f: &dyn Fn(usize) -> f64| all.push((0..q.len()).map(f).collect());
     for edge in [0.35, 0.7] {
         of(&|t| (x[t] - edge).max(0.0));
         of(&|t| (-x[t] - edge).max(0.0));
@@ -105,6 +102,30 @@ pub(super) fn columns(
     of(&|t| rate[t]);
     of(&|t| qdd[t]);
     track.decimate(&all)
+}
+
+/// The columns that change slowly in time alone, decimated: offset and friction that drift.
+pub(super) fn slow(track: &Track, joint: usize) -> Vec<Vec<f64>> {
+    let qd = &track.motion.qd[joint];
+    let top = qd.iter().fold(1e-9_f64, |top, v| top.max(v.abs()));
+    let band = track.dead_band[joint];
+    let side: Vec<f64> = qd.iter().map(|v| (v / band).clamp(-1.0, 1.0)).collect();
+    let v: Vec<f64> = qd.iter().map(|v| v / top).collect();
+    let long = qd.len().max(1) as f64;
+    let s: Vec<f64> = (0..qd.len()).map(|k| k as f64 / long).collect();
+    track.decimate(&drifts(&s, &side, &v))
+}
+
+/// Offset, Coulomb and viscous friction times powers of time.
+fn drifts(time: &[f64], side: &[f64], v: &[f64]) -> Vec<Vec<f64>> {
+    let of_power = |power: i32| {
+        let with = |other: &dyn Fn(usize) -> f64| -> Vec<f64> {
+            let times = time.iter().enumerate();
+            times.map(|(t, s)| s.powi(power) * other(t)).collect()
+        };
+        [with(&|_| 1.0), with(&|t| side[t]), with(&|t| v[t])]
+    };
+    (1..=2).flat_map(of_power).collect()
 }
 
 fn range(series: &[f64]) -> (f64, f64) {

@@ -47,7 +47,7 @@ pub(super) fn noise(
         .map(|lag| product(&all, segments, lag))
         .collect();
     let rows = mask.iter().sum::<f64>() - segments.len() as f64 * ORDER as f64;
-    let start = reflections(&covariance(&left(&all), &mask, segments));
+    let start = reflections(&covariance(&left(all.clone()), &mask, segments));
     let start: [f64; ORDER] = start.map(|r| r.clamp(-0.97, 0.97).atanh());
     let cost =
         |free: &[f64; ORDER]| restricted(&lags, rows, free).map_or(f64::INFINITY, |(cost, _)| cost);
@@ -57,7 +57,7 @@ pub(super) fn noise(
         // Rounding is all that is left of the columns: the noise of what they leave.
         None => {
             let share = 1.0 - (all.len() - 1) as f64 / rows.max(all.len() as f64);
-            of_rows(&left(&all), &mask, segments, share.max(0.1))
+            of_rows(&left(all.clone()), &mask, segments, share.max(0.1))
         }
     }
 }
@@ -98,14 +98,12 @@ fn independent(columns: &[Vec<f64>]) -> Vec<usize> {
 }
 
 /// What all columns but the last leave of the last, by ordinary least squares.
-fn left(all: &[Vec<f64>]) -> Vec<f64> {
-    let Some((y, columns)) = all.split_last() else {
+pub(super) fn left(mut all: Vec<Vec<f64>>) -> Vec<f64> {
+    let Some(mut y) = all.pop() else {
         return Vec::new();
     };
-    let mut y = y.clone();
     let mut basis: Vec<Vec<f64>> = Vec::new();
-    for column in columns {
-        let mut v = column.clone();
+    for mut v in all {
         for _ in 0..2 {
             for q in &basis {
                 let share = super::linear::dot(q, &v);
@@ -113,6 +111,9 @@ fn left(all: &[Vec<f64>]) -> Vec<f64> {
             }
         }
         let length = super::linear::dot(&v, &v).sqrt();
+        if !length.is_normal() {
+            continue;
+        }
         v.iter_mut().for_each(|v| *v /= length);
         let share = super::linear::dot(&v, &y);
         super::linear::add_scaled(&mut y, -share, &v);

@@ -7,7 +7,9 @@
 //! confirmed. This room knows no effect by name; torque never enters a column.
 
 mod catalogue;
+mod closed_loop;
 mod generic;
+mod instruments;
 mod joined;
 mod likelihood;
 mod linear;
@@ -21,6 +23,7 @@ mod rest;
 mod screen;
 mod state;
 mod stepwise;
+mod still;
 mod summary;
 mod system;
 mod track;
@@ -36,14 +39,14 @@ use crate::report::Diagnosis;
 use crate::settings::Derivatives;
 use joined::Joined;
 use null::{Null, Prior};
-use state::{Bench, State};
+use state::{Bench, Predictions, State};
 use stepwise::Stepwise;
 use summary::Asked;
 use track::Track;
 
 /// Cut-off of the prefilter, Hz, and rate of the rows, Hz, where the robot does not say.
 const CUT_OFF: f64 = 50.0;
-const ROWS_HZ: f64 = 100.0;
+const ROWS_HZ: f64 = 50.0;
 
 /// The prefilter stays below this share of half the sampling rate.
 const BELOW_NYQUIST: f64 = 0.4;
@@ -94,11 +97,18 @@ pub fn diagnose(
     let (confirm, proof) = split(&other);
     progress.step("fitting the null model and its noise");
     let prior = Prior::of(model, model.knowledge());
-    let null = null::null(model, &joined, &prior);
+    let guess = null::first_guess(model, &joined, &prior);
+    let instruments = instruments::beside(model, &joined, &guess);
+    progress.step("fitting the null model and its noise, for good");
+    let null = null::null(model, (&joined, &instruments), &prior);
     let Null { noise, system, .. } = &null;
     let parameters = system.solution();
-    let predicted = joined.predict(model, &parameters);
+    let predicted = Predictions {
+        train: joined.predict(model, &parameters),
+        instruments: instruments.predict(model, &parameters),
+    };
     let hypotheses = predicted
+        .train
         .first()
         .map(|predicted| catalogue.hypotheses(&joined.tracks[0].signals(predicted)))
         .unwrap_or_default();
@@ -107,6 +117,7 @@ pub fn diagnose(
         catalogue,
         hypotheses: &hypotheses,
         train: &joined,
+        instruments: &instruments,
         noise,
         null: system,
     };

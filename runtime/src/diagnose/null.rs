@@ -3,12 +3,11 @@
 
 use super::generic;
 use super::joined::Joined;
-use super::likelihood;
+use super::likelihood::{self, left};
 use super::linear::dot;
 use super::noise::{Noise, of_rows};
 use super::repeats::{Repeats, find, pure_error};
-use super::screen::smoothed;
-use super::system::{Sparse, System};
+use super::system::{Pair, Sparse, System};
 use super::track::Predicted;
 use crate::knowledge::Knowledge;
 use crate::model::{ColumnKind, IdentificationModel};
@@ -56,25 +55,49 @@ pub(super) struct Null {
     pub generic: Vec<Vec<Sparse>>,
 }
 
-/// Fits the null model and its noise.
-pub(super) fn null(model: &dyn IdentificationModel, joined: &Joined, prior: &Prior) -> Null {
+/// Parameters by least squares alone, good enough to simulate with.
+pub(super) fn first_guess(
+    model: &dyn IdentificationModel,
+    joined: &Joined,
+    prior: &Prior,
+) -> Vec<f64> {
+    let noise = unknown_noise(joined);
+    fit(model, (joined, joined), &noise, prior).solution()
+}
+
+/// Noise before anything is known of it: a part of the torque.
+fn unknown_noise(joined: &Joined) -> Vec<Noise> {
+    let of_joint = |joint: usize| {
+        let y = joined.measured(joint);
+        Noise::white(0.05 * (dot(&y, &y) / y.len().max(1) as f64).sqrt())
+    };
+    (0..joined.joints()).map(of_joint).collect()
+}
+
+/// Fits the null model and its noise along logs and the motions of their instruments.
+pub(super) fn null(
+    model: &dyn IdentificationModel,
+    (joined, instruments): (&Joined, &Joined),
+    prior: &Prior,
+) -> Null {
     let segments = joined.tracks.iter().zip(joined.segments.clone());
     let repeats: Vec<Repeats> = segments
         .filter_map(|(track, rows)| find(track, rows))
         .collect();
-    let mut noise: Vec<Noise> = (0..joined.joints())
-        .map(|joint| {
-            let y = joined.measured(joint);
-            Noise::white(0.05 * (dot(&y, &y) / y.len().max(1) as f64).sqrt())
-        })
-        .collect();
+    let mut noise = unknown_noise(joined);
     let mut generic: Vec<Vec<Vec<f64>>> = Vec::new();
-    let mut system = fit(model, joined, &noise, prior);
+    // What changes slowly does not repeat and is no noise either.
+    let slow = match repeats.is_empty() {
+        true => Vec::new(),
+        false => slow_columns(joined),
+    };
+    let mut system = fit(model, (joined, instruments), &noise, prior);
     for _ in 0..PASSES {
         let parameters = system.solution();
         let product = joined.product(&parameters);
         if repeats.is_empty() {
-            generic = generic_columns(model, joined, &joined.predict(model, &parameters));
+            let predicted = instruments.predict(model, &parameters);
+            generic = generic_columns(model, instruments, &predicted);
         }
         for (joint, noise) in noise.iter_mut().enumerate() {
             let y = joined.measured(joint);
@@ -88,14 +111,17 @@ pub(super) fn null(model: &dyn IdentificationModel, joined: &Joined, prior: &Pri
                 likelihood::noise(&generic[joint], &residual, weights, &joined.segments)
             } else {
                 let error = pure_error(&residual, weights, &repeats);
-                of_rows(&error.rows, &error.weights, &joined.segments, 1.0)
+                let slow = slow[joint]
+                    .iter()
+                    .map(|c| pure_error(c, weights, &repeats).rows);
+                let left = left(slow.chain([error.rows]).collect());
+                of_rows(&left, &error.weights, &joined.segments, 1.0)
             };
         }
-        system = fit(model, joined, &noise, prior);
+        system = fit(model, (joined, instruments), &noise, prior);
     }
     let whiten = |(joint, columns): (usize, Vec<Vec<f64>>)| -> Vec<Sparse> {
-        // Along the smooth motion, as all that the loop could imitate.
-        let column = |rows: Vec<f64>| joined.whiten(&[(joint, smoothed(&rows))], &noise);
+        let column = |rows: Vec<f64>| joined.whiten(&[(joint, rows)], &noise);
         columns.into_iter().map(column).collect()
     };
     Null {
@@ -106,8 +132,13 @@ pub(super) fn null(model: &dyn IdentificationModel, joined: &Joined, prior: &Pri
     }
 }
 
-/// Weighted least squares of the base parameters, with the rows of the prior.
-fn fit(model: &dyn IdentificationModel, joined: &Joined, noise: &[Noise], prior: &Prior) -> System {
+/// Weighted fit of the base parameters, with the rows of the prior.
+fn fit(
+    model: &dyn IdentificationModel,
+    (joined, instruments): (&Joined, &Joined),
+    noise: &[Noise],
+    prior: &Prior,
+) -> System {
     let joints = joined.joints();
     let mut y = Vec::with_capacity(joints * joined.rows() + prior.right.len());
     for joint in 0..joints {
@@ -115,15 +146,28 @@ fn fit(model: &dyn IdentificationModel, joined: &Joined, noise: &[Noise], prior:
         white.0.into_iter().for_each(|(_, rows)| y.extend(rows));
     }
     y.extend_from_slice(&prior.right);
-    let mut system = System::new(joined.rows(), y);
-    for k in 0..model.columns().len() {
-        let mut column = joined.whiten(&joined.base(k), noise);
+    let column = |along: &Joined, k: usize| {
+        let mut column = along.whiten(&along.base(k), noise);
         if let Some(known) = prior.columns.get(k).filter(|rows| !rows.is_empty()) {
             column.0.push((joints, known.clone()));
         }
-        system.push(&column);
-    }
-    system
+        column
+    };
+    let pair = |k: usize| (column(joined, k), column(instruments, k));
+    let pairs: Vec<Pair> = (0..model.columns().len()).map(pair).collect();
+    System::new(joined.rows(), y).with(&pairs)
+}
+
+/// The columns of the generic model that change slowly, of each joint over all logs.
+fn slow_columns(joined: &Joined) -> Vec<Vec<Vec<f64>>> {
+    let of_joint = |joint: usize| {
+        let mut all: Vec<Vec<f64>> = Vec::new();
+        for track in &joined.tracks {
+            append(&mut all, generic::slow(track, joint));
+        }
+        all
+    };
+    (0..joined.joints()).map(of_joint).collect()
 }
 
 /// Columns of the generic model over all logs, and those of the null model.
@@ -140,14 +184,21 @@ fn generic_columns(
             .collect();
         let mut own: Vec<Vec<f64>> = Vec::new();
         for (track, predicted) in joined.tracks.iter().zip(predicted) {
-            let columns = generic::columns(track, predicted, (joint, kind.kind));
-            own.resize(columns.len(), Vec::new());
-            own.iter_mut()
-                .zip(columns)
-                .for_each(|(all, more)| all.extend(more));
+            append(
+                &mut own,
+                generic::columns(track, predicted, (joint, kind.kind)),
+            );
         }
         all.extend(own);
         all
     };
     model.joints().iter().enumerate().map(of_joint).collect()
+}
+
+/// Puts the columns of another log below those so far.
+fn append(all: &mut Vec<Vec<f64>>, columns: Vec<Vec<f64>>) {
+    all.resize(columns.len(), Vec::new());
+    all.iter_mut()
+        .zip(columns)
+        .for_each(|(all, more)| all.extend(more));
 }

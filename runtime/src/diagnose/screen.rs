@@ -14,7 +14,7 @@ pub(super) const PENALTY: f64 = 10.0;
 /// others never reach, which the loop can imitate (reference: simulation of the null for a few
 /// hundred candidates).
 const PLAIN: f64 = 25.0;
-const THROUGH_THE_LOOP: f64 = 45.0;
+const THROUGH_THE_LOOP: f64 = 30.0;
 
 /// Evaluations of a shape's refinement in each direction.
 const EVALUATIONS: usize = 7;
@@ -27,11 +27,10 @@ type Map = fn(f64) -> f64;
 pub(super) struct Candidate {
     pub number: usize,
     pub shape: Vec<f64>,
+    /// Its columns along the motion of the instruments.
     pub columns: Vec<Sparse>,
-    /// Shares of the null model's basis in the columns.
+    /// Shares of the null model's basis in them.
     known: Vec<Vec<f64>>,
-    /// The same of the columns along the smooth motion, for what the loop can imitate.
-    smooth: Option<(Vec<Sparse>, Vec<Vec<f64>>)>,
 }
 
 /// What a candidate gains in a state.
@@ -61,35 +60,19 @@ impl Bench<'_> {
         shapes: &[Vec<f64>],
         along: &[ColumnsAlong<'_>],
     ) -> Vec<Candidate> {
-        let made = self.train.columns(along, &self.hypotheses[number], shapes);
+        let made = self
+            .instruments
+            .columns(along, &self.hypotheses[number], shapes);
         let candidate = |(shape, columns): (&Vec<f64>, Vec<super::track::Decimated>)| {
             let white =
                 |column: &super::track::Decimated| self.train.whiten(&column.torque, self.noise);
-            let shares = |columns: &[Sparse]| -> Vec<Vec<f64>> {
-                columns
-                    .iter()
-                    .map(|column| self.null.shares(column, 0))
-                    .collect()
-            };
-            let smooth = (self.kind(number) != EntryKind::Static).then(|| {
-                let smooth = |column: &super::track::Decimated| {
-                    let torque = column.torque.iter();
-                    let torque: Vec<(usize, Vec<f64>)> = torque
-                        .map(|(joint, rows)| (*joint, smoothed(rows)))
-                        .collect();
-                    self.train.whiten(&torque, self.noise)
-                };
-                let smooth: Vec<Sparse> = columns.iter().map(smooth).collect();
-                let shares = shares(&smooth);
-                (smooth, shares)
-            });
             let columns: Vec<Sparse> = columns.iter().map(white).collect();
+            let known = columns.iter().map(|column| self.null.shares(column, 0));
             Candidate {
                 number,
                 shape: shape.clone(),
-                known: shares(&columns),
+                known: known.collect(),
                 columns,
-                smooth,
             }
         };
         shapes.iter().zip(made).map(candidate).collect()
@@ -108,10 +91,7 @@ impl Bench<'_> {
 
     /// Gain, degrees of freedom, margin.
     fn gain(&self, candidate: &Candidate, system: &System) -> (Gain, usize, f64) {
-        let mut gain = system.gain(&candidate.columns, &candidate.known);
-        if let Some((smooth, known)) = &candidate.smooth {
-            gain.square = gain.square.min(system.gain(smooth, known).square);
-        }
+        let gain = system.gain(&candidate.columns, &candidate.known);
         let freedom = gain.columns() + searched(&self.hypotheses[candidate.number].grid).len();
         let entry = &self.catalogue.entries()[self.hypotheses[candidate.number].entry];
         let threshold = match entry.kind {
@@ -216,7 +196,7 @@ impl Bench<'_> {
 /// of accelerations and, through the controller, in the torque; above the band of the motion there is
 /// nothing else, and what only this shares explains is no effect.
 pub(super) fn smoothed(rows: &[f64]) -> Vec<f64> {
-    const WIDTH: f64 = 1.5;
+    const WIDTH: f64 = 1.0;
     let kernel: Vec<f64> = (0..6)
         .map(|k| (-0.5 * (f64::from(k) / WIDTH).powi(2)).exp())
         .collect();

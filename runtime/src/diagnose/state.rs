@@ -1,11 +1,11 @@
 //! The model with the effects that it has by now, fitted.
 
-use super::catalogue::{Catalogue, EntryKind, Hypothesis};
+use super::catalogue::{Catalogue, ColumnsAlong, EntryKind, Hypothesis};
 use super::joined::Joined;
 use super::linear::add_scaled;
 use super::noise::Noise;
-use super::system::{Sparse, System};
-use super::track::{Predicted, Track};
+use super::system::{Pair, Sparse, System};
+use super::track::{Decimated, Predicted, Track};
 use crate::model::IdentificationModel;
 
 /// Rounds in which columns that depend on the model are rebuilt.
@@ -21,7 +21,14 @@ pub(super) struct Effect {
     pub names: Vec<(String, &'static str)>,
     pub values: Vec<f64>,
     pub sigmas: Vec<Option<f64>>,
-    columns: Vec<Sparse>,
+    pairs: Vec<Pair>,
+}
+
+impl Effect {
+    /// Its columns along the instruments' motions.
+    pub fn instruments(&self) -> Vec<Sparse> {
+        self.pairs.iter().map(|(_, z)| z.clone()).collect()
+    }
 }
 
 /// What every step of the search needs.
@@ -31,6 +38,8 @@ pub(super) struct Bench<'a> {
     pub catalogue: &'a dyn Catalogue,
     pub hypotheses: &'a [Hypothesis],
     pub train: &'a Joined,
+    /// The same rows along motions without noise.
+    pub instruments: &'a Joined,
     pub noise: &'a [Noise],
     /// The null model alone.
     pub null: &'a System,
@@ -42,24 +51,40 @@ pub(super) struct State {
     pub system: System,
     pub parameters: Vec<f64>,
     pub effects: Vec<Effect>,
-    /// What it predicts along the training logs.
-    pub predicted: Vec<Predicted>,
+    /// What it predicts.
+    pub predicted: Predictions,
 }
 
-impl Bench<'_> {
+/// Predictions along the training logs and along their instruments' motions, log by log.
+#[derive(Clone, Debug)]
+pub(super) struct Predictions {
+    pub train: Vec<Predicted>,
+    pub instruments: Vec<Predicted>,
+}
+
+impl<'a> Bench<'a> {
+    /// The columns of the catalogue along the instruments' motions.
+    pub fn beside<'b>(&self, predicted: &'b Predictions) -> Vec<ColumnsAlong<'b>>
+    where
+        'a: 'b,
+    {
+        self.instruments
+            .along(self.catalogue, &predicted.instruments)
+    }
+
     pub fn kind(&self, number: usize) -> EntryKind {
         self.catalogue.entries()[self.hypotheses[number].entry].kind
     }
 
     /// The null model with effects (number and shape), starting from what `before` predicts.
-    pub fn settle(&self, chosen: &[(usize, Vec<f64>)], before: &[Predicted]) -> State {
-        let mut predicted = before.to_vec();
+    pub fn settle(&self, chosen: &[(usize, Vec<f64>)], before: &Predictions) -> State {
+        let mut predicted = before.clone();
         let dependent = chosen
             .iter()
             .any(|(number, _)| self.kind(*number) != EntryKind::Static);
         let mut state = self.fitted(chosen, predicted.clone());
         for _ in 0..if dependent { ROUNDS } else { 1 } {
-            predicted = self.predicted(self.train, &state.parameters, &state.effects);
+            predicted = self.predictions(&state.parameters, &state.effects);
             if dependent {
                 state = self.fitted(chosen, predicted.clone());
             }
@@ -68,22 +93,21 @@ impl Bench<'_> {
         state
     }
 
-    fn fitted(&self, chosen: &[(usize, Vec<f64>)], predicted: Vec<Predicted>) -> State {
-        let mut system = self.null.clone();
+    fn fitted(&self, chosen: &[(usize, Vec<f64>)], predicted: Predictions) -> State {
         let mut effects: Vec<Effect> = Vec::new();
-        let along = self.train.along(self.catalogue, &predicted);
+        let along = self.train.along(self.catalogue, &predicted.train);
+        let beside = self
+            .instruments
+            .along(self.catalogue, &predicted.instruments);
         for (number, shape) in chosen {
             let hypothesis = &self.hypotheses[*number];
             let shapes = std::slice::from_ref(shape);
             let made = self.train.columns(&along, hypothesis, shapes);
             let made: Vec<_> = made.into_iter().flatten().collect();
-            let columns: Vec<Sparse> = made
-                .iter()
-                .map(|column| self.train.whiten(&column.torque, self.noise))
-                .collect();
-            columns.iter().for_each(|column| {
-                system.push(column);
-            });
+            let instruments = self.instruments.columns(&beside, hypothesis, shapes);
+            let white = |column: &Decimated| self.train.whiten(&column.torque, self.noise);
+            let pairs = made.iter().zip(instruments.iter().flatten());
+            let pairs: Vec<Pair> = pairs.map(|(w, z)| (white(w), white(z))).collect();
             effects.push(Effect {
                 number: *number,
                 shape: shape.clone(),
@@ -93,17 +117,19 @@ impl Bench<'_> {
                     .collect(),
                 values: Vec::new(),
                 sigmas: Vec::new(),
-                columns,
+                pairs,
             });
         }
-        drop(along);
+        drop((along, beside));
+        let all: Vec<Pair> = effects.iter().flat_map(|e| e.pairs.clone()).collect();
+        let system = self.null.with(&all);
         let np = self.model.columns().len();
         let mut solution = system.solution();
         let added = solution.split_off(np);
         let sigmas = system.sigmas(added.len());
         let mut first = 0;
         for effect in &mut effects {
-            let own = first..first + effect.columns.len();
+            let own = first..first + effect.pairs.len();
             first = own.end;
             effect.values = added[own.clone()].to_vec();
             effect.sigmas = sigmas[own].to_vec();
@@ -113,6 +139,14 @@ impl Bench<'_> {
             parameters: solution,
             effects,
             predicted,
+        }
+    }
+
+    /// What a model with effects predicts along the training logs and beside them.
+    pub fn predictions(&self, parameters: &[f64], effects: &[Effect]) -> Predictions {
+        Predictions {
+            train: self.predicted(self.train, parameters, effects),
+            instruments: self.predicted(self.instruments, parameters, effects),
         }
     }
 

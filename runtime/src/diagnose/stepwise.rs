@@ -7,7 +7,7 @@ use super::joined::Joined;
 use super::linear::chi_square_survival;
 use super::screen::{Candidate, Contender};
 use super::state::{Bench, State};
-use super::system::Sparse;
+use super::system::Pair;
 
 /// Effects named at most.
 const MOST: usize = 5;
@@ -31,6 +31,10 @@ const LEFT_SHARE: f64 = 0.05;
 
 /// Share of the gain that the columns promise on another motion which must be there.
 const CONFIRMED: f64 = 1.0 / 3.0;
+
+/// Standard deviations of that gain's own noise, which is twice the root of the promise, times two:
+/// what a promise is too small to decide, the training log decides.
+const DOUBT: f64 = 3.0;
 
 /// By how much an effect may raise the plain torque error on another motion, as a factor: what
 /// only noise decides.
@@ -100,7 +104,7 @@ impl<'a> Stepwise<'a> {
         let (fixed, dependent): (Vec<usize>, Vec<usize>) =
             all.partition(|number| bench.kind(*number) == EntryKind::Static);
         Stepwise {
-            fixed: bench.candidates(&fixed, &bench.train.along(bench.catalogue, &null.predicted)),
+            fixed: bench.candidates(&fixed, &bench.beside(&null.predicted)),
             bench,
             confirm,
             dependent,
@@ -139,10 +143,7 @@ impl<'a> Stepwise<'a> {
 
     fn forward(&mut self, mut state: State, named: &mut Vec<Named>) -> State {
         while named.len() < MOST {
-            let along = self
-                .bench
-                .train
-                .along(self.bench.catalogue, &state.predicted);
+            let along = self.bench.beside(&state.predicted);
             let ranking = self.ranking(&state, named, &along);
             let Some((next, found)) = self.choose(ranking, &state, named, &along) else {
                 break;
@@ -264,6 +265,12 @@ impl<'a> Stepwise<'a> {
             contender.candidate.shape.clone(),
         ));
         let next = self.bench.settle(&chosen, &state.predicted);
+        let added = next.effects.last();
+        if added.is_some_and(|effect| effect.sigmas.iter().all(Option::is_none)) {
+            return Err(
+                "along the measured motion nothing but noise is left of its columns".to_owned(),
+            );
+        }
         let Some(confirm) = self.confirm else {
             return Ok(next);
         };
@@ -271,7 +278,7 @@ impl<'a> Stepwise<'a> {
         let after = self.bench.rows(&next, confirm);
         let (along, promised) = self.bench.difference(confirm, (&before, &after));
         let gained = 2.0 * along - promised;
-        if gained < CONFIRMED * promised {
+        if gained < CONFIRMED * promised - DOUBT * promised.sqrt() {
             return Err(format!(
                 "it improves the training log (by {:.0}) and does not keep its promise on the \
                  validation log: {gained:.0} of {promised:.0}",
@@ -346,10 +353,9 @@ impl<'a> Stepwise<'a> {
 
     /// Whether hardly anything is left of one explanation once another is in the model.
     fn same(&self, one: &Contender, other: &Contender, state: &State) -> bool {
-        let mut with = state.system.clone();
-        other.candidate.columns.iter().for_each(|column: &Sparse| {
-            with.push(column);
-        });
+        let columns = other.candidate.columns.iter();
+        let pairs: Vec<Pair> = columns.map(|z| (z.clone(), z.clone())).collect();
+        let with = state.system.with(&pairs);
         let left = self.bench.contend(one.candidate.clone(), &with).gain.square;
         left < LEFT.max(LEFT_SHARE * one.gain.square)
     }
@@ -366,10 +372,7 @@ impl<'a> Stepwise<'a> {
             let chosen: Vec<(usize, Vec<f64>)> =
                 others.iter().map(|n| (n.number, n.shape.clone())).collect();
             let without = self.bench.settle(&chosen, &state.predicted);
-            let along = self
-                .bench
-                .train
-                .along(self.bench.catalogue, &without.predicted);
+            let along = self.bench.beside(&without.predicted);
             let ranking = self.ranking(&without, &others, &along);
             let margin = ranking
                 .iter()

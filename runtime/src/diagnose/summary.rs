@@ -142,7 +142,7 @@ fn effects(bench: &Bench<'_>, outcome: &Outcome) -> (Vec<usize>, Vec<FoundEffect
             .map(|other| (other.number, other.shape.clone()))
             .collect();
         let without = bench.settle(&others, &outcome.state.predicted);
-        let gain = without.system.square() - outcome.state.system.square();
+        let gain = without.system.gain(&effect.instruments(), &[]).square;
         let error = proof::fit(bench, &without, bench.train).total_pct;
         found.push((
             gain,

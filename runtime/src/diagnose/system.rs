@@ -1,11 +1,18 @@
-//! Weighted least squares that grows column by column.
+//! Weighted least squares with instruments, that grows by columns.
 
+use std::sync::Arc;
+
+use faer::Mat;
+use faer::linalg::solvers::{DenseSolveCore, Solve};
 use rayon::prelude::*;
 
 use super::linear::{OWN, add_scaled, dot, solve};
 
 /// Share of a column's length that must be left of it for it to be determined.
 const DETERMINED: f64 = 1e-7;
+
+/// Share of its instrument's own part that a column must have: less is no instrument for it.
+const STRONG: f64 = 0.1;
 
 /// A column of whitened rows: what it is on each joint that it acts on. The rows of prior
 /// knowledge come after those of the last joint, as one more.
@@ -20,29 +27,53 @@ impl Sparse {
         };
         self.0.iter().map(part).sum()
     }
+
+    /// The sum of its products with a vector of all joints' rows.
+    fn dot_dense(&self, dense: &[f64], rows: usize) -> f64 {
+        let part = |(joint, values): &(usize, Vec<f64>)| {
+            dot(&dense[joint * rows..][..values.len()], values)
+        };
+        self.0.iter().map(part).sum()
+    }
+
+    fn add_to(&self, dense: &mut [f64], rows: usize, factor: f64) {
+        for (joint, values) in &self.0 {
+            add_scaled(&mut dense[joint * rows..][..values.len()], factor, values);
+        }
+    }
 }
 
-/// \\( \min \|y - W x\|^2 \\) with \\( W = Q R \\), columns appended one at a time.
+/// A column along the measured motion and its instrument, the same column along a motion without
+/// noise.
+pub(super) type Pair = (Sparse, Sparse);
+
+/// \\( y = W x + n \\) by instrumental variables, \\( Z^T (y - W x) = 0 \\): W follows the measured
+/// motion and has its noise, Z follows one without (Söderström and Stoica 1989). With Z = W this is
+/// least squares.
 #[derive(Clone, Debug)]
 pub(super) struct System {
     /// Rows of each joint.
     rows: usize,
-    /// Orthonormal columns.
-    basis: Vec<Vec<f64>>,
-    /// Columns of R.
-    upper: Vec<Vec<f64>>,
+    y: Arc<Vec<f64>>,
+    /// Orthonormal columns Q that span Z.
+    basis: Vec<Arc<Vec<f64>>>,
+    /// The columns of W that are determined.
+    columns: Vec<Arc<Sparse>>,
+    /// \\( Q^T w \\) of each of them.
+    products: Vec<Vec<f64>>,
     /// Place in the basis of every column appended; `None` if the others already span it.
     places: Vec<Option<usize>>,
-    /// \\( Q^T y \\).
-    shares: Vec<f64>,
-    /// What is left of y.
+    /// The solution for the determined columns, and \\( (Q^T W)^{-1} \\).
+    solution: Vec<f64>,
+    inverse: Arc<Mat<f64>>,
+    /// What is left of y; nothing of it lies along Q.
     residual: Vec<f64>,
 }
 
 /// What some more columns would gain.
 #[derive(Clone, Debug)]
 pub(super) struct Gain {
-    /// By how much the sum of squares would fall.
+    /// By how much the sum of squares along the instruments would fall.
     pub square: f64,
     /// Coefficients; `None` for what the columns before it, or the system's, already span.
     pub values: Vec<Option<f64>>,
@@ -61,88 +92,95 @@ impl System {
         System {
             rows,
             basis: Vec::new(),
-            upper: Vec::new(),
+            columns: Vec::new(),
+            products: Vec::new(),
             places: Vec::new(),
-            shares: Vec::new(),
-            residual: y,
+            solution: Vec::new(),
+            inverse: Arc::new(Mat::zeros(0, 0)),
+            residual: y.clone(),
+            y: Arc::new(y),
         }
     }
 
-    /// Appends a column; false if the others span it.
-    pub fn push(&mut self, column: &Sparse) -> bool {
-        let mut v = vec![0.0; self.residual.len()];
-        for (joint, values) in &column.0 {
-            let start = joint * self.rows;
-            add_scaled(&mut v[start..start + values.len()], 1.0, values);
+    /// The system with more columns, solved again.
+    pub fn with(&self, pairs: &[Pair]) -> System {
+        let mut grown = self.clone();
+        for (column, instrument) in pairs {
+            grown.push(column, instrument);
         }
-        let length = dot(&v, &v).sqrt();
-        let mut upper = vec![0.0; self.basis.len()];
+        grown.solve();
+        grown
+    }
+
+    /// Appends a column, unless the others span its instrument.
+    fn push(&mut self, column: &Sparse, instrument: &Sparse) {
+        let mut z = vec![0.0; self.y.len()];
+        instrument.add_to(&mut z, self.rows, 1.0);
+        let length = dot(&z, &z).sqrt();
         // Twice is enough (Giraud et al. 2005).
         for _ in 0..2 {
-            let shares: Vec<f64> = self.basis.par_iter().map(|q| dot(q, &v)).collect();
-            for ((q, share), sum) in self.basis.iter().zip(shares).zip(&mut upper) {
-                add_scaled(&mut v, -share, q);
-                *sum += share;
+            let shares: Vec<f64> = self.basis.par_iter().map(|q| dot(q, &z)).collect();
+            for (q, share) in self.basis.iter().zip(shares) {
+                add_scaled(&mut z, -share, q);
             }
         }
-        let left = dot(&v, &v).sqrt();
-        let own = left > DETERMINED * length && left.is_normal();
+        let left = dot(&z, &z).sqrt();
+        z.iter_mut().for_each(|z| *z /= left);
+        let shared = column.dot_dense(&z, self.rows);
+        let own = left > DETERMINED * length && left.is_normal() && shared > STRONG * left;
         self.places.push(own.then_some(self.basis.len()));
-        if own {
-            v.iter_mut().for_each(|v| *v /= left);
-            let share = dot(&v, &self.residual);
-            add_scaled(&mut self.residual, -share, &v);
-            upper.push(left);
-            self.upper.push(upper);
-            self.shares.push(share);
-            self.basis.push(v);
+        if !own {
+            return;
         }
-        own
+        let z = Arc::new(z);
+        let rows = self.rows;
+        let others = self.columns.par_iter().zip(&mut self.products);
+        others.for_each(|(column, products)| products.push(column.dot_dense(&z, rows)));
+        self.basis.push(z);
+        let products = self.basis.par_iter();
+        self.products
+            .push(products.map(|q| column.dot_dense(q, rows)).collect());
+        self.columns.push(Arc::new(column.clone()));
+    }
+
+    fn solve(&mut self) {
+        let n = self.basis.len();
+        let matrix = Mat::from_fn(n, n, |i, k| self.products[k][i]);
+        let shares = Mat::from_fn(n, 1, |i, _| dot(&self.basis[i], &self.y));
+        let lu = matrix.partial_piv_lu();
+        let x = lu.solve(&shares);
+        self.solution = (0..n).map(|k| x[(k, 0)]).collect();
+        self.inverse = Arc::new(lu.inverse());
+        let mut residual = self.y.to_vec();
+        for (column, x) in self.columns.iter().zip(&self.solution) {
+            column.add_to(&mut residual, self.rows, -x);
+        }
+        self.residual = residual;
     }
 
     /// Coefficients of all columns appended; zero for those that the others span.
     pub fn solution(&self) -> Vec<f64> {
-        let mut x = self.shares.clone();
-        for k in (0..x.len()).rev() {
-            x[k] /= self.upper[k][k];
-            let value = x[k];
-            for (i, r) in self.upper[k][..k].iter().enumerate() {
-                x[i] -= r * value;
-            }
-        }
-        let value = |place: &Option<usize>| place.map_or(0.0, |k| x[k]);
+        let value = |place: &Option<usize>| place.map_or(0.0, |k| self.solution[k]);
         self.places.iter().map(value).collect()
     }
 
-    /// Standard deviations of the last `count` columns appended, for rows of variance one.
+    /// Standard deviations of the last `count` columns appended, for rows of variance one: lengths
+    /// of the rows of \\( (Q^T W)^{-1} \\).
     pub fn sigmas(&self, count: usize) -> Vec<Option<f64>> {
+        let sigma = |k: usize| {
+            let squares = (0..self.basis.len()).map(|i| self.inverse[(k, i)].powi(2));
+            squares.sum::<f64>().sqrt()
+        };
         let first = self.places.len() - count;
         self.places[first..]
             .iter()
-            .map(|place| place.map(|k| self.sigma(k)))
+            .map(|place| place.map(sigma))
             .collect()
-    }
-
-    /// Length of row `k` of the inverse of R.
-    fn sigma(&self, k: usize) -> f64 {
-        let n = self.basis.len();
-        let mut row = vec![0.0; n];
-        row[k] = 1.0 / self.upper[k][k];
-        for j in k + 1..n {
-            let sum: f64 = (k..j).map(|i| row[i] * self.upper[j][i]).sum();
-            row[j] = -sum / self.upper[j][j];
-        }
-        dot(&row, &row).sqrt()
     }
 
     /// What is left of the rows of a joint.
     pub fn residual(&self, joint: usize) -> &[f64] {
         &self.residual[joint * self.rows..(joint + 1) * self.rows]
-    }
-
-    /// Sum of squares.
-    pub fn square(&self) -> f64 {
-        dot(&self.residual, &self.residual)
     }
 
     /// How many of the coefficients the rows of a joint decide.
@@ -154,42 +192,29 @@ impl System {
             .sum()
     }
 
-    /// \\( Q^T c \\) for the basis from place `first` on.
-    pub fn shares(&self, column: &Sparse, first: usize) -> Vec<f64> {
-        let share = |q: &Vec<f64>| -> f64 {
-            let part = |(joint, values): &(usize, Vec<f64>)| {
-                dot(&q[joint * self.rows..][..values.len()], values)
-            };
-            column.0.iter().map(part).sum()
-        };
+    /// \\( Q^T z \\) for the basis from place `first` on.
+    pub fn shares(&self, instrument: &Sparse, first: usize) -> Vec<f64> {
         self.basis[first.min(self.basis.len())..]
             .iter()
-            .map(share)
+            .map(|q| instrument.dot_dense(q, self.rows))
             .collect()
     }
 
-    /// What is left of y along a column.
-    fn along(&self, column: &Sparse) -> f64 {
-        let part = |(joint, values): &(usize, Vec<f64>)| {
-            dot(&self.residual[joint * self.rows..][..values.len()], values)
-        };
-        column.0.iter().map(part).sum()
-    }
-
-    /// What columns would gain. `known` holds, for each, its shares of the first columns of the
-    /// basis, from [`System::shares`] of a system that this one grew from; it may be empty.
-    pub fn gain(&self, columns: &[Sparse], known: &[Vec<f64>]) -> Gain {
-        self.gain_of(columns, known, OWN)
+    /// What columns would gain, by their instruments. `known` holds, for each, its shares of the
+    /// first columns of the basis, from [`System::shares`] of a system that this one grew from; it
+    /// may be empty.
+    pub fn gain(&self, instruments: &[Sparse], known: &[Vec<f64>]) -> Gain {
+        self.gain_of(instruments, known, OWN)
     }
 
     /// The same for columns that count only if at least the share `least` of their squares is
     /// their own.
-    pub fn gain_of(&self, columns: &[Sparse], known: &[Vec<f64>], least: f64) -> Gain {
-        let m = columns.len();
+    pub fn gain_of(&self, instruments: &[Sparse], known: &[Vec<f64>], least: f64) -> Gain {
+        let m = instruments.len();
         let all: Vec<Vec<f64>> = (0..m)
             .map(|k| {
                 let mut shares = known.get(k).cloned().unwrap_or_default();
-                shares.extend(self.shares(&columns[k], shares.len()));
+                shares.extend(self.shares(&instruments[k], shares.len()));
                 shares
             })
             .collect();
@@ -197,7 +222,7 @@ impl System {
         let mut squares = vec![0.0; m];
         for i in 0..m {
             for k in i..m {
-                let product = columns[i].dot(&columns[k]);
+                let product = instruments[i].dot(&instruments[k]);
                 if i == k {
                     squares[i] = product;
                 }
@@ -205,7 +230,10 @@ impl System {
                 gram[k * m + i] = gram[i * m + k];
             }
         }
-        let right: Vec<f64> = columns.iter().map(|column| self.along(column)).collect();
+        let right: Vec<f64> = instruments
+            .iter()
+            .map(|z| z.dot_dense(&self.residual, self.rows))
+            .collect();
         let values = solve(&gram, &squares, &right, least);
         let square = values
             .iter()
@@ -213,5 +241,73 @@ impl System {
             .map(|(x, g)| x.unwrap_or(0.0) * g)
             .sum();
         Gain { square, values }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Uniform values between -0.5 and 0.5, by a linear congruence.
+    fn noise(random: &mut u64, len: usize) -> Vec<f64> {
+        let mut value = || {
+            *random = random
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            (*random >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+        };
+        (0..len).map(|_| value()).collect()
+    }
+
+    fn sum(a: &[f64], factor: f64, b: &[f64]) -> Vec<f64> {
+        a.iter().zip(b).map(|(a, b)| a + factor * b).collect()
+    }
+
+    #[test]
+    fn instruments_see_through_noise_in_the_columns() {
+        // A column whose noise comes back in y, as position noise does through a controller.
+        let len = 20_000;
+        let mut random = 1_u64;
+        let clean: Vec<f64> = (0..len).map(|t| (0.01 * t as f64).sin()).collect();
+        let noise = noise(&mut random, len);
+        let measured = sum(&clean, 1.0, &noise);
+        let y = sum(&clean, -1.0, &noise);
+        let column = |rows: &[f64]| Sparse(vec![(0, rows.to_vec())]);
+        let least = System::new(len, y.clone()).with(&[(column(&measured), column(&measured))]);
+        let through = System::new(len, y).with(&[(column(&measured), column(&clean))]);
+        // By least squares: (1/2 - 1/12) / (1/2 + 1/12) = 5/7.
+        assert!((least.solution()[0] - 5.0 / 7.0).abs() < 0.02);
+        let (found, sigma) = (through.solution()[0], through.sigmas(1)[0].unwrap());
+        // The error of each row is 2 * noise, of variance 4/12; rows of variance one are assumed.
+        assert!((found - 1.0).abs() < 3.0 * sigma, "{found} +- {sigma}");
+        assert!((sigma - (2.0 / len as f64).sqrt()).abs() < 0.05 * sigma);
+    }
+
+    #[test]
+    fn what_a_column_would_gain_is_what_it_gains() {
+        let len = 500;
+        let mut random = 3_u64;
+        let mut column = || Sparse(vec![(0, noise(&mut random, len))]);
+        let (first, second, y) = (column(), column(), column());
+        let y = y.0[0].1.clone();
+        let with_first = System::new(len, y).with(&[(first.clone(), first)]);
+        let promised = with_first.gain(&[second.clone()], &[]);
+        let both = with_first.with(&[(second.clone(), second)]);
+        let square = |system: &System| dot(system.residual(0), system.residual(0));
+        let gained = square(&with_first) - square(&both);
+        assert!((gained - promised.square).abs() < 1e-9 * gained.abs().max(1e-3));
+        let value = both.solution()[1];
+        assert!((value - promised.values[0].unwrap()).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_column_that_its_instrument_does_not_follow_is_left_out() {
+        let len = 400;
+        let mut random = 5_u64;
+        let mut column = || Sparse(vec![(0, noise(&mut random, len))]);
+        let (column, instrument, y) = (Sparse(vec![(0, vec![0.0; len])]), column(), column());
+        let system = System::new(len, y.0[0].1.clone()).with(&[(column, instrument)]);
+        assert_eq!(system.solution(), [0.0]);
+        assert_eq!(system.sigmas(1), [None]);
     }
 }

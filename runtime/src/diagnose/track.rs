@@ -1,29 +1,20 @@
 //! A log as the diagnosis sees it: the motion at its full rate, for columns that need it, and the
 //! decimated rows of every joint.
 
-use std::ops::Range;
+use std::sync::Arc;
 
 use rayon::prelude::*;
 
 use super::catalogue::{ColumnsAlong, Hypothesis, Signals, TorqueColumn};
 use super::rest::Rested;
+use super::still::{dead_band, weights};
 use crate::log::{Companion, Recording, resolution};
 use crate::model::{ColumnKind, IdentificationModel, Output};
 use crate::observe::{
     Equations, Filtering, ModelKind, Motion, ObserveError, check_torque, contract, equations_at,
 };
-use crate::settings::Edges;
+use crate::settings::{Edges, Velocity};
 use crate::signal::{Decimator, SignalError};
-
-/// What rows beside a standstill count for: friction at rest is any torque below its limit, and the
-/// filters spread what it does there.
-const NEAR_REST: f64 = 0.25;
-
-/// Standard deviations of the velocity's noise within which its sign is not certain.
-const UNCERTAIN: f64 = 3.0;
-
-/// Share of the largest velocity below which the sign is not certain either.
-const SLOW: f64 = 1e-3;
 
 /// Torque of an effect along a log, decimated.
 #[derive(Clone, Debug)]
@@ -48,9 +39,25 @@ pub(super) struct Track {
     pub equations: Vec<Equations>,
     /// What each row counts for, by joint.
     pub weights: Vec<Vec<f64>>,
-    dead_band: Vec<f64>,
-    /// Whether the logged torque is held from each sample to the next.
-    held: bool,
+    pub dead_band: Vec<f64>,
+    /// What it was made of.
+    pub source: Arc<Source>,
+}
+
+/// A log with everything that is known of it.
+#[derive(Clone, Debug)]
+pub(super) struct Source {
+    pub recording: Recording,
+    pub companion: Companion,
+    pub filtering: Filtering,
+}
+
+/// What a track may follow instead of its own motion.
+pub(super) enum Instead {
+    /// Other positions, one series per joint at the log's samples, rad or m.
+    Positions(Vec<Vec<f64>>),
+    /// Its own behind a prefilter with this cut-off, Hz.
+    Below(f64),
 }
 
 /// The torques that the present model predicts along a track, at its full rate.
@@ -95,21 +102,69 @@ impl Track {
             None => recording.q.iter().map(|q| resolution(q)).collect(),
         };
         let dead_band = dead_band(&motion, &steps, filtering);
-        let qd = motion.qd.iter_mut().zip(&dead_band);
-        qd.for_each(|(qd, band)| through_rest(qd, *band));
-        let rested = Rested::new(model, dead_band.clone());
-        let made = equations_at(&rested, ModelKind::Explicit, &motion, &decimator, &kept);
         let reach = filtering.reach(motion.rate_hz);
-        Ok(Track {
+        let track = Track {
             t: (0..motion.len).map(|k| k as f64 / motion.rate_hz).collect(),
             weights: weights(&motion, &kept, &dead_band, reach),
-            equations: made.map_err(fail)?.blocks,
+            equations: Vec::new(),
             motion,
             decimator,
             kept,
             dead_band,
-            held: companion.controller.is_some(),
-        })
+            source: Arc::new(Source {
+                recording: recording.clone(),
+                companion: companion.clone(),
+                filtering: filtering.clone(),
+            }),
+        };
+        track.observed(model)
+    }
+
+    /// The same rows along another motion: that of positions `q`, or of those of the log behind a
+    /// lower cut-off.
+    pub fn beside(
+        &self,
+        model: &dyn IdentificationModel,
+        instead: &Instead,
+    ) -> Result<Track, ObserveError> {
+        let Source {
+            recording,
+            filtering,
+            ..
+        } = &*self.source;
+        let mut filtering = Filtering {
+            velocity: Velocity::Derived,
+            ..filtering.clone()
+        };
+        let mut recording = Recording {
+            qd: None,
+            tau: None,
+            ..recording.clone()
+        };
+        match instead {
+            Instead::Positions(q) => recording.q.clone_from(q),
+            Instead::Below(fq_hz) => filtering.fq_hz = filtering.fq_hz.min(*fq_hz),
+        }
+        let track = Track {
+            motion: Motion::full(&recording, model, &filtering)?,
+            ..self.clone()
+        };
+        track.observed(model)
+    }
+
+    /// With W along the motion.
+    fn observed(mut self, model: &dyn IdentificationModel) -> Result<Track, ObserveError> {
+        let rested = Rested::new(model, self.dead_band.clone());
+        let (motion, decimator) = (&self.motion, &self.decimator);
+        let made = equations_at(&rested, ModelKind::Explicit, motion, decimator, &self.kept);
+        self.equations = made
+            .map_err(|source| ObserveError::Filter {
+                log: motion.log.clone(),
+                step: "parallel filter",
+                source,
+            })?
+            .blocks;
+        Ok(self)
     }
 
     /// Number of rows of each joint.
@@ -125,7 +180,7 @@ impl Track {
     /// A torque along the motion as the log has it: what a controller holds from one sample to the
     /// next stands in the log at its beginning.
     pub fn as_logged(&self, torque: &mut [f64]) {
-        if self.held {
+        if self.source.companion.controller.is_some() {
             for k in 1..torque.len() {
                 torque[k - 1] = 0.5 * (torque[k - 1] + torque[k]);
             }
@@ -149,21 +204,7 @@ impl Track {
 
     /// Torques of a model with np parameters.
     pub fn predict(&self, model: &dyn IdentificationModel, parameters: &[f64]) -> Predicted {
-        let rigid: Vec<f64> = model
-            .columns()
-            .iter()
-            .zip(parameters)
-            .map(|(column, value)| match column.kind {
-                ColumnKind::Inertial | ColumnKind::Drive => *value,
-                ColumnKind::Friction | ColumnKind::Effect => 0.0,
-            })
-            .collect();
-        let model = Rested::new(model, self.dead_band.clone());
-        Predicted {
-            model: contract(&model, Output::Explicit, &self.motion, parameters),
-            rigid: contract(&model, Output::Explicit, &self.motion, &rigid),
-            parameters: parameters.to_vec(),
-        }
+        predict(model, parameters, &self.motion, &self.dead_band)
     }
 
     /// The signals that columns are made of.
@@ -224,6 +265,30 @@ impl Track {
     }
 }
 
+/// Torques of a model with np parameters along a motion.
+pub(super) fn predict(
+    model: &dyn IdentificationModel,
+    parameters: &[f64],
+    motion: &Motion,
+    dead_band: &[f64],
+) -> Predicted {
+    let rigid: Vec<f64> = model
+        .columns()
+        .iter()
+        .zip(parameters)
+        .map(|(column, value)| match column.kind {
+            ColumnKind::Inertial | ColumnKind::Drive => *value,
+            ColumnKind::Friction | ColumnKind::Effect => 0.0,
+        })
+        .collect();
+    let model = Rested::new(model, dead_band.to_vec());
+    Predicted {
+        model: contract(&model, Output::Explicit, motion, parameters),
+        rigid: contract(&model, Output::Explicit, motion, &rigid),
+        parameters: parameters.to_vec(),
+    }
+}
+
 /// The samples to keep: not those at the edges, which the filters falsify.
 fn inner(motion: &Motion, filtering: &Filtering, decimator: &Decimator) -> Vec<usize> {
     let (start, end) = filtering.cut_before();
@@ -231,24 +296,13 @@ fn inner(motion: &Motion, filtering: &Filtering, decimator: &Decimator) -> Vec<u
         Edges::Scipy => 0,
         Edges::Matlab => filtering.trim * filtering.nd,
     };
-    let inside = start + more..motion.len.saturating_sub(end + more);
+    // What the filters believe beyond the ends of the log reaches in so far.
+    let edge = 2 * filtering.reach(motion.rate_hz);
+    let (start, end) = ((start + more).max(edge), (end + more).max(edge));
+    let inside = start..motion.len.saturating_sub(end);
     let mut kept = decimator.kept(motion.len);
     kept.retain(|sample| inside.contains(sample));
     kept
-}
-
-/// Velocity under which the sign is not certain: the noise that quantised positions leave behind
-/// prefilter and difference.
-fn dead_band(motion: &Motion, steps: &[f64], filtering: &Filtering) -> Vec<f64> {
-    let cut_off = filtering.fq_hz.min(0.4 * motion.rate_hz);
-    let w = 2.0 * std::f64::consts::PI * cut_off;
-    let noise = w * (2.0 * cut_off / (3.0 * motion.rate_hz)).sqrt();
-    let of_joint = |(qd, step): (&Vec<f64>, &f64)| {
-        let top = qd.iter().fold(0.0_f64, |top, v| top.max(v.abs()));
-        let white = step / 12f64.sqrt();
-        (UNCERTAIN * white * noise).max(SLOW * top)
-    };
-    motion.qd.iter().zip(steps).map(of_joint).collect()
 }
 
 /// The torque at each sample of a controller that runs once a sample and holds its torque until the
@@ -257,55 +311,4 @@ fn held(tau: &mut [f64]) {
     for k in (1..tau.len()).rev() {
         tau[k] = 0.5 * (tau[k - 1] + tau[k]);
     }
-}
-
-/// Lets a velocity run straight in time from one side of its dead band to the other. Friction at
-/// rest balances whatever the drive pushes with, which grows about so until the joint breaks away;
-/// what the velocity's noise does meanwhile says nothing of it.
-fn through_rest(qd: &mut [f64], band: f64) {
-    let mut start = 0;
-    while let Some(first) = (start..qd.len()).find(|&k| qd[k].abs() < band) {
-        let end = (first..qd.len())
-            .find(|&k| qd[k].abs() >= band)
-            .unwrap_or(qd.len());
-        start = end;
-        let side = |k: usize| qd.get(k).map_or(0.0, |v| v.signum());
-        let (from, to) = (first.checked_sub(1).map_or(0.0, side), side(end));
-        let steps = (end - first + 1) as f64;
-        for (k, v) in qd[first..end].iter_mut().enumerate() {
-            let part = (k + 1) as f64 / steps;
-            // Never quite the band itself, which counts as moving.
-            *v = 0.999 * band * ((1.0 - part) * from + part * to);
-        }
-    }
-}
-
-/// What rows count for: nothing near samples that cannot be believed, less near rest.
-fn weights(motion: &Motion, kept: &[usize], dead_band: &[f64], reach: usize) -> Vec<Vec<f64>> {
-    let half = kept
-        .get(1)
-        .map_or(1, |second| (second - kept[0]).div_ceil(2));
-    let around = |sample: usize, far: usize| -> Range<usize> {
-        sample.saturating_sub(far)..(sample + far + 1).min(motion.len)
-    };
-    let doubted = |sample: usize| {
-        let near = around(sample, reach);
-        motion
-            .doubtful
-            .iter()
-            .any(|r| r.start < near.end && near.start < r.end)
-    };
-    let doubted: Vec<bool> = kept.iter().map(|&sample| doubted(sample)).collect();
-    let joint = |(qd, band): (&Vec<f64>, &f64)| {
-        let slow =
-            |sample: usize, far: usize| qd[around(sample, far)].iter().any(|v| v.abs() < *band);
-        let weight = |(&sample, &doubted): (&usize, &bool)| match doubted {
-            true => 0.0,
-            false if slow(sample, half) => 0.0,
-            false if slow(sample, 3 * half) => NEAR_REST,
-            false => 1.0,
-        };
-        kept.iter().zip(&doubted).map(weight).collect()
-    };
-    motion.qd.iter().zip(dead_band).map(joint).collect()
 }

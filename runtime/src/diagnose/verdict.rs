@@ -13,16 +13,16 @@ const SIGNIFICANT: f64 = 6.0;
 
 /// Excess of the residual's variance over the noise's below which a lack of fit, however
 /// significant, is left to the noise model.
-const MEANINGFUL: f64 = 0.15;
+const MEANINGFUL: f64 = 0.06;
 
 /// Degrees of freedom that smoothing leaves of each row: one over the effective width of its kernel.
-const SMOOTH_FREEDOM: f64 = 0.19;
+const SMOOTH_FREEDOM: f64 = 0.28;
 
 /// Share of a generic column that must be its own: there are many, and some are nearly alike.
-const GENERIC_OWN: f64 = 1e-5;
+const GENERIC_OWN: f64 = 1e-3;
 
 /// Rows about a standstill that do not take part.
-const AROUND_REST: usize = 5;
+const AROUND_REST: usize = 3;
 
 /// Share of the lack of fit that naming must close, if what is left is significant.
 const CLOSED: f64 = 0.9;
@@ -139,7 +139,7 @@ pub(super) fn located(
 fn varies_with(bench: &Bench<'_>, state: &State, joint: usize, square: f64) -> Vec<&'static str> {
     let kind = bench.model.joints()[joint].kind;
     let mut columns: Vec<(&'static str, Vec<f64>)> = Vec::new();
-    for (track, predicted) in bench.train.tracks.iter().zip(&state.predicted) {
+    for (track, predicted) in bench.train.tracks.iter().zip(&state.predicted.train) {
         let own = generic::columns(track, predicted, (joint, kind));
         if columns.is_empty() {
             columns = generic::variables()

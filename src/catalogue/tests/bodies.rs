@@ -116,3 +116,47 @@ fn a_force_on_the_flange_is_the_weight_of_a_point_there() {
         assert!(apart(&got, &expected) < 1e-10, "{axis}");
     }
 }
+
+/// Pose of the arm's flange in frame 0, by its drawing.
+fn flange(q: [f64; 4]) -> nalgebra::Isometry3<f64> {
+    use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
+    let shift = |x: f64, y: f64, z: f64| {
+        Isometry3::from_parts(Translation3::new(x, y, z), UnitQuaternion::identity())
+    };
+    let turn = |axis: [f64; 3], angle: f64| Isometry3::rotation(Vector3::from(axis) * angle);
+    let [x, y, z] = PLAIN.elbow;
+    shift(0.0, 0.0, 0.3)
+        * turn([0.0, 0.0, 1.0], q[0])
+        * shift(0.06, 0.0, 0.1)
+        * turn([0.0, 1.0, 0.0], q[1])
+        * shift(x, y, z)
+        * turn([0.0, 1.0, 0.0], q[2])
+        * shift(0.3, 0.02, 0.0)
+        * turn([1.0, 0.0, 0.0], q[3])
+        * shift(0.1, 0.02, 0.03)
+        * turn([0.0, 1.0, 0.0], 0.4)
+}
+
+#[test]
+fn a_force_that_turns_with_the_flange_does_the_work_of_its_drawing() {
+    let plain = PLAIN.robot();
+    let course = Course::of(&plain);
+    let columns = course.columns(&Effects::new(&plain), "external_force", &[], &[1.0]);
+    for i in (0..course.t.len()).step_by(7) {
+        let q = [0, 1, 2, 3].map(|joint: usize| course.q[joint][i]);
+        let axes = flange(q).rotation;
+        for joint in 0..4 {
+            let at = |by: f64| {
+                let mut q = q;
+                q[joint] += by;
+                flange(q).translation.vector
+            };
+            // The work of a unit force on the way of the flange, in the flange's axes.
+            let work = axes.inverse() * ((at(1e-5) - at(-1e-5)) / 2e-5);
+            for (axis, column) in columns.iter().enumerate() {
+                let got = spread(column, course.t.len())[joint][i];
+                assert!((got + work[axis]).abs() < 1e-8, "{axis} on joint {joint}");
+            }
+        }
+    }
+}

@@ -9,3 +9,4 @@ mod model;
 mod parting;
 mod plant;
 mod refused;
+mod relaxed;
