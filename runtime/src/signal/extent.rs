@@ -36,8 +36,25 @@ impl WithSimd for Extremes<'_> {
 
 /// Whether all values are finite numbers.
 pub(crate) fn all_finite(series: &[f64]) -> bool {
-    // No way out on the way: so the values are looked at side by side.
-    series.iter().fold(true, |all, x| all & x.is_finite())
+    Arch::new().dispatch(Finite(series))
+}
+
+/// [`all_finite`] on the vectors of a machine.
+struct Finite<'a>(&'a [f64]);
+
+impl WithSimd for Finite<'_> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> bool {
+        let (vectors, rest) = S::as_simd_f64s(self.0);
+        let mut none = simd.splat_f64s(0.0);
+        for &x in vectors {
+            // Zero for numbers; what is none stays none.
+            none = simd.add_f64s(none, simd.sub_f64s(x, x));
+        }
+        simd.reduce_sum_f64s(none) == 0.0 && rest.iter().all(|x| x.is_finite())
+    }
 }
 
 /// What running medians of five find along a series of at least five values.

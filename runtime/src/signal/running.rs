@@ -88,7 +88,6 @@ impl Running {
 
     /// Takes out the first `rows` rows: signal by signal (planar), `rows` values each.
     pub fn give(&mut self, rows: usize, out: &mut Vec<f64>) {
-        out.clear();
         out.resize(rows * self.signals, 0.0);
         Arch::new().dispatch(Give {
             running: self,
@@ -244,16 +243,21 @@ impl Give<'_> {
         within: Range<usize>,
         first: usize,
     ) {
-        let echo = &self.running.table.echo[..block.rows];
+        let table = &self.running.table;
+        let echo = table.echo[..block.rows].iter().rev();
+        let echo = || echo.clone().skip(within.start);
         let values = S::as_simd_f64s(&block.values).0.chunks_exact(block.rows);
         let out = self.out.chunks_mut(self.rows * S::F64_LANES);
+        let mut complete = vec![simd.splat_f64s(0.0); within.len()];
         for (out, (values, beyond)) in out.zip(values.zip(beyond)) {
-            let rows = values.iter().zip(echo.iter().rev()).enumerate();
-            for (row, (value, echo)) in rows.skip(within.start).take(within.len()) {
-                let value = simd.add_f64s(*value, weighted(simd, echo, beyond));
-                let place = first + row - within.start;
-                let values: &[f64] = bytemuck::cast_slice(std::slice::from_ref(&value));
-                let places = out[place..].iter_mut().step_by(self.rows);
+            let rows = values[within.clone()].iter().zip(echo());
+            for (place, (value, echo)) in complete.iter_mut().zip(rows) {
+                *place = simd.add_f64s(*value, weighted(simd, echo, beyond));
+            }
+            let complete: &[f64] = bytemuck::cast_slice(&complete);
+            for (lane, signal) in out.chunks_exact_mut(self.rows).enumerate() {
+                let places = signal[first..].iter_mut();
+                let values = complete[lane..].iter().step_by(S::F64_LANES);
                 places
                     .zip(values)
                     .for_each(|(place, value)| *place = *value);
