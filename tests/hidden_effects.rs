@@ -10,8 +10,9 @@
 #[allow(dead_code, reason = "the example uses the rest")]
 mod cases;
 
-use cases::draw::{Category, draw};
+use cases::draw::draw;
 use cases::score::Scored;
+use cases::truth::Category;
 use cases::{answer, files, table};
 use idim::runtime::report::Verdict;
 

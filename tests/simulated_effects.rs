@@ -11,13 +11,14 @@ mod cases;
 
 use std::f64::consts::TAU;
 
-use cases::draw::host_of;
 use cases::hidden::{Effect, Hidden};
+use cases::host::{Host, host_of};
+use cases::kinds::KINDS;
 use cases::logs::{Noise, Simulated, controller, simulate};
 use cases::machine::Machine;
-use cases::propose::{Host, propose};
+use cases::propose::propose;
 use cases::random::Random;
-use cases::robots::{Described, KINDS, describe};
+use cases::robots::{Described, describe};
 use idim::catalogue::Effects;
 use idim::codegen::Robot;
 use idim::codegen::builder::read_texts;

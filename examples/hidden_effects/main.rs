@@ -15,6 +15,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use cases::machine::Failure;
 use cases::score::Scored;
+use cases::truth::Truth;
 use cases::{answer, draw, files, table};
 
 /// What is to be done.
@@ -70,7 +71,7 @@ fn main() -> Result<(), Failure> {
 }
 
 /// Has a case diagnosed; what diagnoses sees its folder alone.
-fn score(folder: &Path, truth: draw::Truth) -> Result<Scored, Failure> {
+fn score(folder: &Path, truth: Truth) -> Result<Scored, Failure> {
     let answer = answer::answer(&folder.join("cases").join(&truth.case))?;
     let scored = Scored { truth, answer };
     println!("{}", table::line(&scored));

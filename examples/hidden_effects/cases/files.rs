@@ -5,10 +5,10 @@ use std::path::Path;
 
 use idim::runtime::log;
 
-use super::draw::{Case, Truth};
 use super::logs::{Simulated, companion};
 use super::machine::Failure;
 use super::motion::RATE_HZ;
+use super::truth::{Case, Truth};
 
 /// Writes `cases/NAME/` and `truth/NAME.json` under a folder.
 pub fn write(folder: &Path, case: &Case) -> Result<(), Failure> {

@@ -4,6 +4,8 @@ use std::fmt::Write;
 
 use idim::runtime::log::{Controller, Feedforward, Fourier, Law, Reference, Start};
 use idim::runtime::model::IdentificationModel;
+use idim::runtime::settings::Edges;
+use idim::runtime::signal::{ZeroPhase, butterworth};
 use idim::runtime::simulate::{
     ClosedLoop, Grid, Method, Options, State, Trajectory, controlled, inverse_dynamics,
 };
@@ -58,6 +60,10 @@ pub struct Simulated {
     pub truth: Vec<Vec<f64>>,
     /// What of the logged torques is noise.
     pub noise: Vec<Vec<f64>>,
+    /// Torques that the drives deliver, with the log's noise, and the standard deviation of what of
+    /// the commands is above 20 Hz.
+    pub delivered: Vec<Vec<f64>>,
+    pub chatter: Vec<f64>,
 }
 
 /// PD control with rigid feedforward for the described robot.
@@ -115,6 +121,7 @@ pub fn simulate(
         ..Options::default()
     };
     let run = controlled(plant, &nominal.model, &plan, &options)?;
+    let chatter = chatter(&run.tau)?;
     let mut tau = run.tau;
     for effect in effects {
         if let Hidden::Late { by } = effect.hidden {
@@ -124,7 +131,7 @@ pub fn simulate(
                 .collect();
         }
     }
-    let mut noise_of = Vec::new();
+    let (mut noise_of, mut delivered) = (Vec::new(), Vec::new());
     for (place, &joint) in machine.driven.iter().enumerate() {
         let white: Vec<f64> = (0..len)
             .map(|_| noise.white[place] * random.normal())
@@ -133,6 +140,8 @@ pub fn simulate(
             *value = round(*value + white, 1e-5);
         }
         let both = white.iter().zip(&disturbance[joint]);
+        let applied = run.motion.tau[joint].iter().zip(&white);
+        delivered.push(applied.map(|(tau, white)| tau + white).collect());
         noise_of.push(both.map(|(white, slow)| white - slow).collect());
     }
     Ok(Simulated {
@@ -145,7 +154,20 @@ pub fn simulate(
         tau,
         truth: run.motion.q,
         noise: noise_of,
+        delivered,
+        chatter,
     })
+}
+
+/// How far commands jump about their mean.
+fn chatter(tau: &[Vec<f64>]) -> Result<Vec<f64>, Failure> {
+    let low_pass = ZeroPhase::new(butterworth(4, 20.0, RATE_HZ)?, 4, Edges::Scipy);
+    let smooth = low_pass.filter(tau)?;
+    let of_joint = |(tau, smooth): (&Vec<f64>, &Vec<f64>)| {
+        let squares = tau.iter().zip(smooth).map(|(a, b)| (a - b).powi(2));
+        (squares.sum::<f64>() / tau.len() as f64).sqrt()
+    };
+    Ok(tau.iter().zip(&smooth).map(of_joint).collect())
 }
 
 fn round(x: f64, step: f64) -> f64 {

@@ -13,7 +13,8 @@ use idim::runtime::simulate::{
     Disturbance, Drift, Drive, Dynamics, Encoder, Influence, LoadFriction, Plant, Weight,
 };
 
-use super::hidden::{Effect, Hidden, Structure, structure, tree};
+use super::build::tree;
+use super::hidden::{Effect, Hidden, Structure, structure};
 use super::random::Random;
 use super::robots::PRIOR;
 

@@ -4,7 +4,11 @@ use idim::codegen::catalogue::EffectKind;
 use idim::codegen::describe::{Description, Motion};
 use idim::runtime::simulate::{Influence, Moment};
 
-use super::hidden::{ask, fasten, hanging, rock, tree};
+use super::build::{ask, fasten, hanging, rock, tree};
+use super::hidden::{Effect, Hidden};
+use super::host::Host;
+use super::random::Random;
+use super::robots::Rating;
 
 /// Something outside of the catalogue. Joints count from 0; SI.
 #[derive(Clone, Debug)]
@@ -183,4 +187,112 @@ impl Influence for Hose {
     fn torque(&mut self, _: f64, _: &[f64], _: &[f64], torque: &mut [f64]) {
         torque[self.joint] += self.torque * self.pull;
     }
+}
+
+/// Something outside of the catalogue; always clear.
+pub fn outside(host: &Host, random: &mut Random) -> Option<Effect> {
+    let joint = random.whole(0, host.ratings.len() - 1);
+    let Rating {
+        scale,
+        speed,
+        slides,
+        ..
+    } = host.ratings[joint];
+    let (low, high) = host.range[joint];
+    let torque = 0.05 * scale * random.uniform(0.7, 1.4);
+    let (name, joints, outside) = match random.whole(0, 6) {
+        0 => {
+            let way = random.uniform(0.15, 0.35) * (high - low);
+            ("hose", vec![joint], Outside::Hose { joint, torque, way })
+        }
+        1 if !slides => {
+            let (angle, ratio) = (random.uniform(low, high), random.uniform(0.6, 0.85));
+            (
+                "crank",
+                vec![joint],
+                Outside::Crank {
+                    joint,
+                    torque: 1.6 * torque,
+                    angle,
+                    ratio,
+                },
+            )
+        }
+        2 if !slides => {
+            let (times, speed) = (
+                random.whole(3, 9) as f64,
+                speed * random.uniform(0.12, 0.25),
+            );
+            (
+                "fading_cogging",
+                vec![joint],
+                Outside::FadingCogging {
+                    joint,
+                    torque,
+                    times,
+                    speed,
+                },
+            )
+        }
+        3 => {
+            let other = (joint + random.whole(1, host.ratings.len() - 1)) % host.ratings.len();
+            let phase = random.uniform(0.0, std::f64::consts::TAU);
+            (
+                "cable_friction",
+                vec![joint],
+                Outside::CableFriction {
+                    joint,
+                    other,
+                    torque,
+                    phase,
+                },
+            )
+        }
+        4 => {
+            let interval = random.uniform(0.5, 0.9);
+            (
+                "grease",
+                vec![joint],
+                Outside::Grease {
+                    joint,
+                    torque,
+                    interval,
+                },
+            )
+        }
+        5 => {
+            let axis = random.one_of(&[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
+            let inertia = host.mass * 0.3;
+            let omega = std::f64::consts::TAU * random.uniform(3.0, 5.0);
+            let (stiffness, damping) = (inertia * omega * omega, 0.1 * inertia * omega);
+            (
+                "rocking_base",
+                vec![],
+                Outside::Rocking {
+                    axis,
+                    stiffness,
+                    damping,
+                },
+            )
+        }
+        6 if host.ratings.len() > 2 => {
+            let (mass, length) = (0.03 * host.mass, random.uniform(0.1, 0.25));
+            let damping = 0.02 * mass * length * (9.81 * length).sqrt();
+            (
+                "swinging_load",
+                vec![],
+                Outside::Swinging {
+                    mass,
+                    length,
+                    damping,
+                },
+            )
+        }
+        _ => return None,
+    };
+    Some(Effect {
+        name,
+        joints,
+        hidden: Hidden::Outside(outside),
+    })
 }

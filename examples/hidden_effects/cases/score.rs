@@ -3,7 +3,7 @@
 use idim::runtime::report::Verdict;
 
 use super::answer::{Answer, Said};
-use super::draw::{Category, Truth};
+use super::truth::{Category, TrueEffect, Truth};
 
 /// Near relatives: a wrong name among them is a near miss, and counted as one.
 const RELATIVES: [&[&str]; 10] = [
@@ -109,7 +109,7 @@ impl Scored {
 
     /// For each hidden effect that is named, whether on the right joints.
     pub fn joints(&self) -> Vec<bool> {
-        let found = |effect: &super::draw::TrueEffect| {
+        let found = |effect: &TrueEffect| {
             let mut all = self
                 .answer
                 .effects

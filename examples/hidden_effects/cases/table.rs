@@ -5,8 +5,8 @@ use std::fmt::Write;
 
 use idim::runtime::report::Verdict;
 
-use super::draw::Category;
 use super::score::Scored;
+use super::truth::Category;
 
 /// Evidence from which on a single effect is asked to be named, standard deviations.
 const DETECTABLE: f64 = 6.0;
