@@ -242,3 +242,98 @@ fn a_written_companion_finds_its_urdf_from_another_folder() {
     let largest = difference(folder.path(), &written);
     assert!(largest < 1e-10, "{largest}");
 }
+
+/// Runs `idim diagnose` on the arm with other arguments: what it prints, and what it complains of.
+fn other(folder: &Path, arguments: &[&str]) -> (bool, String, String) {
+    std::fs::write(folder.join("arm.toml"), ARM).unwrap();
+    let output = Command::new(env!("CARGO_BIN_EXE_idim"))
+        .current_dir(folder)
+        .args(["diagnose", "arm.toml"])
+        .args(arguments)
+        .output()
+        .unwrap();
+    // Complaints are wrapped to lines of their own.
+    let words = |bytes: &[u8]| {
+        let text = String::from_utf8_lossy(bytes).replace('│', " ");
+        text.split_whitespace().collect::<Vec<_>>().join(" ")
+    };
+    (
+        output.status.success(),
+        words(&output.stdout),
+        words(&output.stderr),
+    )
+}
+
+/// A log with its columns changed line by line.
+fn changed(folder: &Path, from: &str, to: &str, change: impl Fn(&mut Vec<f64>)) {
+    let text = std::fs::read_to_string(folder.join(from)).unwrap();
+    let mut lines = text.lines();
+    let mut out = format!("{}\n", lines.next().unwrap());
+    for line in lines {
+        let mut values: Vec<f64> = line.split(',').map(|v| v.parse().unwrap()).collect();
+        change(&mut values);
+        let words: Vec<String> = values.iter().map(f64::to_string).collect();
+        out += &format!("{}\n", words.join(","));
+    }
+    std::fs::write(folder.join(to), out).unwrap();
+}
+
+#[test]
+fn a_validation_log_that_can_confirm_nothing_is_said() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    simulate(&folder.join("train.csv"), 1);
+    simulate(&folder.join("valid.csv"), 2);
+    // t, q1, q2, tau1, tau2.
+    changed(folder, "valid.csv", "unit.csv", |v| v[4] *= 1000.0);
+    changed(folder, "valid.csv", "robot.csv", |v| v.swap(3, 4));
+    changed(folder, "valid.csv", "degrees.csv", |v| {
+        v[1] = v[1].to_degrees();
+        v[2] = v[2].to_degrees();
+    });
+    for (log, piece) in [
+        (
+            "train.csv",
+            "train.csv is the training log train.csv itself",
+        ),
+        (
+            "train.csv@10..24",
+            "shares 14.0 s with the training log train.csv",
+        ),
+        ("degrees.csv", "degrees"),
+    ] {
+        let (done, said, _) = other(folder, &["train.csv", "--validate", log]);
+        assert!(done && said.contains(piece), "{log}: {said}");
+    }
+    // What is not of this robot at all would confirm anything.
+    for (log, piece) in [
+        ("unit.csv", "times what the training logs let expect"),
+        (
+            "robot.csv",
+            "is it of another robot, with joints in another order",
+        ),
+    ] {
+        let (done, _, said) = other(folder, &["train.csv", "--validate", log]);
+        assert!(!done && said.contains(piece), "{log}: {said}");
+    }
+    let (_, said, _) = other(folder, &["train.csv", "--validate", "valid.csv"]);
+    assert!(!said.contains("warning"), "{said}");
+    let (_, said, _) = other(folder, &["train.csv"]);
+    assert!(
+        said.contains("no validation log: what was found is not confirmed"),
+        "{said}"
+    );
+}
+
+#[test]
+fn too_little_data_is_said_with_what_would_be_needed() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    simulate(&folder.join("train.csv"), 1);
+    simulate(&folder.join("valid.csv"), 2);
+    let (done, _, said) = other(folder, &["train.csv@0..0.6", "--validate", "valid.csv"]);
+    assert!(!done, "{said}");
+    assert!(said.contains("use a log of at least"), "{said}");
+    let (done, _, said) = other(folder, &["train.csv", "--validate", "valid.csv@0..0.1"]);
+    assert!(!done && said.contains("valid.csv"), "{said}");
+}

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use idim::catalogue::{Effects, Extension, entries};
 use idim::runtime::diagnose::{Log, Options, Prediction, diagnose};
+use idim::runtime::identify::{Options as Identification, settle_units};
 use idim::runtime::log::{self, LogSpec, ReadOptions};
 use idim::runtime::model::IdentificationModel;
 use idim::runtime::report::{Diagnosis, diagnosed, diagnosis_html};
@@ -14,7 +15,7 @@ pub(super) mod write;
 use super::predictions::Predictions;
 use super::progress::Spinner;
 use super::robot::Texts;
-use super::{Failure, output, robot};
+use super::{Failure, fits, output, robot};
 
 /// Arguments of `idim diagnose`.
 #[derive(Debug, clap::Args)]
@@ -166,7 +167,15 @@ fn read(
         spinner.say(&format!("reading {name}"));
         let spec: LogSpec = name.parse()?;
         let drives = &model.settings().drives;
-        let (recording, companion) = log::read(&spec, model.joints(), drives, &options)?;
+        let (mut recording, companion) = log::read(&spec, model.joints(), drives, &options)?;
+        settle_units(
+            model,
+            &mut recording,
+            &companion,
+            &Identification::default(),
+        );
+        let off = fits::reference(model, &recording, &companion)?;
+        recording.warnings.extend(off);
         Ok(Log {
             recording,
             companion,

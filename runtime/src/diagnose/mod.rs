@@ -8,6 +8,7 @@
 
 mod catalogue;
 mod closed_loop;
+mod doubts;
 mod generic;
 mod instruments;
 mod joined;
@@ -127,6 +128,7 @@ pub fn diagnose(
         effects: Vec::new(),
         predicted,
     };
+    doubts::check(&bench, &before, &other)?;
     progress.step(&format!("screening {} hypotheses", hypotheses.len()));
     let search = Stepwise::new(bench, confirm.as_ref(), &before);
     let outcome = search.run(before.clone());

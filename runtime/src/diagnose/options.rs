@@ -52,10 +52,41 @@ pub enum DiagnoseError {
         /// Its rate, Hz.
         first_hz: f64,
     },
+    /// A validation log whose torque fits but for a factor.
+    #[error(
+        "{log}: the torque of {joint} is {factor:.3} times what the training logs let expect, so \
+         this log can confirm nothing: bring it to the same unit ([columns] of its companion, \
+         [drives] of the robot), or leave it out"
+    )]
+    OtherUnit {
+        /// The validation log.
+        log: String,
+        /// The joint.
+        joint: String,
+        /// Measured over expected.
+        factor: f64,
+    },
+    /// A validation log that the parameters of the training logs do not explain at all.
+    #[error(
+        "{log}: the parameters of the training logs leave {pct:.0} % of its torque unexplained, and \
+         {train_pct:.2} % of their own, so this log can confirm nothing: is it of another robot, \
+         with joints in another order or counted from another zero? Validate on a log of the same \
+         robot"
+    )]
+    OtherRobot {
+        /// The validation log.
+        log: String,
+        /// Its torque error, percent.
+        pct: f64,
+        /// That of the training logs.
+        train_pct: f64,
+    },
     /// Too few rows for the parameters and the noise.
     #[error(
         "the training logs have {rows} rows a joint (at {step_ms} ms); at least {needs} are needed \
-         to tell {parameters} parameters and the noise from a missing effect: use a longer log"
+         to tell {parameters} parameters and the noise from a missing effect: use a log of at least \
+         {seconds:.1} s of motion",
+        seconds = seconds(.needs, .step_ms)
     )]
     TooShort {
         /// Rows there are.
@@ -67,4 +98,9 @@ pub enum DiagnoseError {
         /// Parameters of the model.
         parameters: usize,
     },
+}
+
+/// How long so many rows take, s.
+fn seconds(rows: &usize, step_ms: &f64) -> f64 {
+    *rows as f64 * step_ms / 1e3
 }

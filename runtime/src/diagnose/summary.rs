@@ -8,7 +8,7 @@ use super::null::Null;
 use super::picture::{self, Drawn};
 use super::state::{Bench, Effect, State};
 use super::stepwise::{Named, Outcome};
-use super::{Log, proof, verdict};
+use super::{Log, doubts, proof, verdict};
 use crate::observe::Filtering;
 use crate::report::{
     Alternative, Change, Diagnosis, EffectParameter, Estimated, FoundEffect, Gap, Located,
@@ -80,7 +80,7 @@ pub(super) fn diagnosis(
             on: place(on, proof.is_some(), validate.len()),
         },
         parameters: refitted(bench, before, &outcome.state),
-        warnings: warnings(train, validate),
+        warnings: doubts::warnings(asked.logs),
         command: None,
         pictures: asked
             .draw
@@ -256,30 +256,4 @@ fn joints(bench: &Bench<'_>, hypothesis: &Hypothesis) -> (Option<String>, Vec<us
         name,
         hypothesis.joints.iter().map(|joint| joint + 1).collect(),
     )
-}
-
-fn warnings(train: &[Log], validate: &[Log]) -> Vec<String> {
-    let logs = train.iter().chain(validate);
-    let mut all: Vec<String> = logs
-        .flat_map(|log| log.recording.warnings.clone())
-        .collect();
-    for log in validate {
-        let same = train.iter().find(|other| {
-            other.recording.q == log.recording.q && other.recording.tau == log.recording.tau
-        });
-        if let Some(same) = same {
-            all.push(format!(
-                "{} is the training log {} itself: it confirms and proves nothing",
-                log.recording.name, same.recording.name
-            ));
-        }
-    }
-    if validate.is_empty() {
-        all.push(
-            "no validation log: what was found is not confirmed on another motion, and nothing is \
-             proven; give one with --validate"
-                .to_owned(),
-        );
-    }
-    all
 }
