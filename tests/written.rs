@@ -331,7 +331,7 @@ fn too_little_data_is_said_with_what_would_be_needed() {
     let folder = folder.path();
     simulate(&folder.join("train.csv"), 1);
     simulate(&folder.join("valid.csv"), 2);
-    let (done, _, said) = other(folder, &["train.csv@0..0.6", "--validate", "valid.csv"]);
+    let (done, _, said) = other(folder, &["train.csv@0..1.4", "--validate", "valid.csv"]);
     assert!(!done, "{said}");
     assert!(said.contains("use a log of at least"), "{said}");
     let (done, _, said) = other(folder, &["train.csv", "--validate", "valid.csv@0..0.1"]);

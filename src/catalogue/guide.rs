@@ -21,6 +21,9 @@ inertias; a measured torque never enters a column. Near rest, inside the dead ba
 filter leave, `sgn` is interpolated. Linear parameters are estimated with everything else; shape parameters enter
 non-linearly and are searched. Units are those of a revolute joint; a prismatic one has N for N m and m for rad.
 
+Each picture is the effect's torque along one motion of a small arm over the variable that shows it, from the columns that
+the diagnosis uses (`cargo run --example effect_pictures`).
+
 An effect that base parameters can hide shows only against what is known: described values with tolerances (`[prior]`),
 a nominal model, a known mass. Without any of it it is said to be undecidable on the log, never found.
 ";
@@ -53,6 +56,7 @@ fn section(text: &mut String, entry: &Entry) {
     let _ = write!(text, "\n### `{}`\n\n", entry.name);
     let _ = writeln!(text, "{}.\n", sentence(entry.meaning));
     let _ = writeln!(text, "    {}\n", entry.formula);
+    let _ = writeln!(text, "![signature](effects/{}.svg)\n", entry.name);
     let _ = writeln!(text, "- parameters: {}", names(entry.parameters));
     if !entry.shape.is_empty() {
         let _ = writeln!(text, "- shape: {}", names(entry.shape));

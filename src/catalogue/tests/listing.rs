@@ -119,3 +119,18 @@ fn the_guide_in_docs_is_that_of_the_entries() {
         "docs/effects.md is not what the entries say"
     );
 }
+
+/// The pictures are what `cargo run --example effect_pictures` writes.
+#[test]
+fn every_entry_has_a_picture() {
+    for entry in entries() {
+        let path = format!(
+            "{}/docs/effects/{}.svg",
+            env!("CARGO_MANIFEST_DIR"),
+            entry.name
+        );
+        let picture = std::fs::read_to_string(&path).unwrap();
+        assert!(picture.matches("h0").count() > 500, "{path}: no marks");
+        assert!(!picture.contains("NaN") && picture.len() < 20_000, "{path}");
+    }
+}
