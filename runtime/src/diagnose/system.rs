@@ -291,7 +291,7 @@ mod tests {
         let (first, second, y) = (column(), column(), column());
         let y = y.0[0].1.clone();
         let with_first = System::new(len, y).with(&[(first.clone(), first)]);
-        let promised = with_first.gain(&[second.clone()], &[]);
+        let promised = with_first.gain(std::slice::from_ref(&second), &[]);
         let both = with_first.with(&[(second.clone(), second)]);
         let square = |system: &System| dot(system.residual(0), system.residual(0));
         let gained = square(&with_first) - square(&both);
