@@ -227,6 +227,7 @@ fn column_times_parameter(
         joints: columns[0].joints.clone(),
         grid: vec![],
         bounds: vec![],
+        least: 0.0,
     };
     let values = columns
         .iter()

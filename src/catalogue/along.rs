@@ -22,6 +22,9 @@ pub(super) struct Along<'a> {
     pub signals: Signals<'a>,
     standard: OnceLock<StandardValues>,
     sensitivities: Vec<OnceLock<Sensitivity>>,
+    /// The same of the links alone, which gears carry.
+    link_sensitivities: Vec<OnceLock<Sensitivity>>,
+    carried: OnceLock<Vec<Vec<f64>>>,
 }
 
 /// How the model's torque changes with the motion of one joint: on every joint, per rad (m) of
@@ -47,6 +50,8 @@ impl<'a> Along<'a> {
             signals,
             standard: OnceLock::new(),
             sensitivities: (0..effects.joints()).map(none).collect(),
+            link_sensitivities: (0..effects.joints()).map(none).collect(),
+            carried: OnceLock::new(),
         }
     }
 
@@ -163,9 +168,32 @@ impl<'a> Along<'a> {
             .get_or_init(|| standard_values(&self.effects.robot, self.signals.parameters))
     }
 
-    /// The change of the torque on every joint by a displacement of one joint, to first order.
+    /// Torque that the gears carry: that of the links, without rotors and friction on their drives'
+    /// side.
+    pub fn carried(&self) -> &[Vec<f64>] {
+        self.carried.get_or_init(|| {
+            let values: Vec<f64> = self.standard().iter().flatten().copied().collect();
+            self.effects.links().torque(&self.motion(), &values)
+        })
+    }
+
+    /// The change of the torque on every joint when drive and link of one joint are elsewhere than
+    /// measured, to first order.
     pub fn displaced(&self, joint: usize, by: &Displacement) -> Vec<(usize, Vec<f64>)> {
-        let sensitivity = self.sensitivities[joint].get_or_init(|| self.sensitivity(joint));
+        let all = || self.sensitivity(&self.effects.smooth, self.signals.parameters, joint);
+        self.moved(self.sensitivities[joint].get_or_init(all), by)
+    }
+
+    /// The same when only the link is, its drive where it was measured.
+    pub fn link_displaced(&self, joint: usize, by: &Displacement) -> Vec<(usize, Vec<f64>)> {
+        let of_links = || {
+            let values: Vec<f64> = self.standard().iter().flatten().copied().collect();
+            self.sensitivity(self.effects.links(), &values, joint)
+        };
+        self.moved(self.link_sensitivities[joint].get_or_init(of_links), by)
+    }
+
+    fn moved(&self, sensitivity: &Sensitivity, by: &Displacement) -> Vec<(usize, Vec<f64>)> {
         let torque = |on: usize| -> Vec<f64> {
             let (a, b, c) = (
                 &sensitivity.position[on],
@@ -183,13 +211,13 @@ impl<'a> Along<'a> {
 
     /// Central differences: exact for velocity and acceleration, in which the torque of rigid
     /// bodies is quadratic and linear.
-    fn sensitivity(&self, joint: usize) -> Sensitivity {
+    fn sensitivity(&self, model: &Linear, parameters: &[f64], joint: usize) -> Sensitivity {
         let at = |shift: Shift| {
             let motion = Motion {
                 shift: Some(shift),
                 ..self.motion()
             };
-            self.effects.smooth.torque(&motion, self.signals.parameters)
+            model.torque(&motion, parameters)
         };
         let difference = |shift: fn(usize, f64) -> Shift, step: f64| {
             let (mut up, down) = (at(shift(joint, step)), at(shift(joint, -step)));

@@ -126,7 +126,10 @@ pub(super) static TIME_SHIFT: Effect = Effect {
     hypotheses: |_, reach| {
         let mut all = vec![plain(vec![])];
         all.extend(reach.each_joint());
-        all
+        let least = SAMPLES / reach.signals.rate_hz;
+        all.into_iter()
+            .map(|shift| Hypothesis { least, ..shift })
+            .collect()
     },
     columns: time_shift,
     described: &[],
@@ -135,6 +138,10 @@ pub(super) static TIME_SHIFT: Effect = Effect {
         far.then_some("the channels of a log are not more than 0.1 s apart")
     },
 };
+
+/// Samples between motion and torque that say nothing of the robot: how a logger stamps what it reads
+/// and what it sends is its own business.
+const SAMPLES: f64 = 1.5;
 
 /// Of one joint, or of all where none is given.
 fn time_shift(along: &Along<'_>, joints: &[usize], _: &[f64]) -> Vec<TorqueColumn> {

@@ -108,6 +108,7 @@ impl Effects {
                 .collect(),
             grid: Vec::new(),
             bounds: Vec::new(),
+            least: 0.0,
         };
         Some((hypothesis, shape?))
     }

@@ -94,7 +94,7 @@ pub(super) fn standard_values(robot: &Robot, x: &[f64]) -> StandardValues {
     let inertial = robot.base.parameters.iter().zip(x);
     let inertial = inertial.filter(|(p, _)| matches!(p.kind, ParameterKind::Inertial(_)));
     let moved: Vec<(usize, usize, f64)> = inertial
-        .filter_map(|(parameter, &x)| correction(parameter, x, &values))
+        .filter_map(|(parameter, &x)| correction(robot, parameter, x, &values))
         .collect();
     for (link, place, by) in moved {
         values[link][place] += by;
@@ -103,6 +103,7 @@ pub(super) fn standard_values(robot: &Robot, x: &[f64]) -> StandardValues {
 }
 
 fn correction(
+    robot: &Robot,
     parameter: &BaseParameter,
     x: f64,
     values: &StandardValues,
@@ -111,10 +112,21 @@ fn correction(
         let (link, place) = inertial(name)?;
         Some((*factor, link, place))
     });
+    // Rotors that are regrouped with a link are none of it, as far as they are described.
+    let described = |name: &str| {
+        let mut named = robot.description.parameters.iter();
+        named.find_map(|(known, value)| (known == name).then_some(*value))
+    };
+    let others = parameter.relation.iter();
+    let others = others.filter(|(_, name)| inertial(name).is_none());
+    let beside_bodies: f64 = others
+        .map(|(factor, name)| factor * described(name).unwrap_or(0.0))
+        .sum();
     let present: f64 = terms
         .clone()
         .map(|(factor, link, place)| factor * values.get(link).map_or(0.0, |ten| ten[place]))
-        .sum();
+        .sum::<f64>()
+        + beside_bodies;
     let (factor, link, place) = terms.clone().next()?;
     (link < values.len()).then_some((link, place, (x - present) / factor))
 }

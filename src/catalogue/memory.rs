@@ -87,8 +87,8 @@ pub(super) static JOINT_ELASTICITY: Effect = Effect {
     entry: Entry {
         name: "joint_elasticity",
         meaning: "a gear that yields: the link follows the drive behind a resonance",
-        formula: "d(tau_m)/dq_j along -CE y and its time derivatives, y'' + 2 damping w y' + \
-                  w^2 (y - tau_rigid) = 0, w = 2 pi f",
+        formula: "d(tau_links)/dq_j along -CE y and its time derivatives, y'' + 2 damping w y' + \
+                  w^2 (y - tau_links_j) = 0, w = 2 pi f",
         parameters: &[("CE", "rad/(N m)")],
         shape: &[("f", "Hz"), ("damping", "1")],
         confused_with: &["rotor_inertia", "time_shift", "link_length"],
@@ -128,8 +128,8 @@ fn elasticity(along: &Along<'_>, joints: &[usize], shape: &[f64]) -> Vec<TorqueC
     let (&[joint], &[f, damping]) = (joints, shape) else {
         return Vec::new();
     };
-    let rigid = &along.signals.tau_rigid[joint];
-    let position = resonance(rigid, along.signals.rate_hz, TAU * f, damping);
+    let carried = &along.carried()[joint];
+    let position = resonance(carried, along.signals.rate_hz, TAU * f, damping);
     let position: Vec<f64> = position.iter().map(|y| -y).collect();
     let velocity = along.rate(&position);
     let by = Displacement {
@@ -140,7 +140,7 @@ fn elasticity(along: &Along<'_>, joints: &[usize], shape: &[f64]) -> Vec<TorqueC
     vec![TorqueColumn {
         name: format!("CE{}", joint + 1),
         unit: along.by_kind(joint, "rad/(N m)", "m/N"),
-        torque: along.displaced(joint, &by),
+        torque: along.link_displaced(joint, &by),
     }]
 }
 
@@ -172,7 +172,7 @@ pub(super) static BACKLASH: Effect = Effect {
     entry: Entry {
         name: "backlash",
         meaning: "play of a gear: the link lies behind or before the drive by half the gap",
-        formula: "d(tau_m)/dq_j along -gap/2 sgn(tau_rigid) and its time derivatives",
+        formula: "d(tau_links)/dq_j along -gap/2 sgn(tau_links_j) and its time derivatives",
         parameters: &[("gap", "rad")],
         shape: &[],
         confused_with: &["presliding", "stribeck", "joint_elasticity"],
@@ -194,7 +194,7 @@ fn backlash(along: &Along<'_>, joints: &[usize], _: &[f64]) -> Vec<TorqueColumn>
     let &[joint] = joints else {
         return Vec::new();
     };
-    let side = direction(&along.signals.tau_rigid[joint]);
+    let side = direction(&along.carried()[joint]);
     let position: Vec<f64> = side.iter().map(|side| -0.5 * side).collect();
     let velocity = along.rate(&position);
     let by = Displacement {
@@ -205,6 +205,6 @@ fn backlash(along: &Along<'_>, joints: &[usize], _: &[f64]) -> Vec<TorqueColumn>
     vec![TorqueColumn {
         name: format!("gap{}", joint + 1),
         unit: along.by_kind(joint, "rad", "m"),
-        torque: along.displaced(joint, &by),
+        torque: along.link_displaced(joint, &by),
     }]
 }

@@ -89,6 +89,8 @@ pub struct Effects {
     robot: Robot,
     /// The smooth part of the present model: rigid bodies, rotor inertias, viscous friction.
     smooth: Linear,
+    /// Standard columns of all links.
+    links: OnceLock<Linear>,
     /// Standard columns of the last link.
     tool: OnceLock<Linear>,
     /// Standard columns under unit gravity along x, y, z of frame 0.
@@ -114,6 +116,7 @@ impl Effects {
         Effects {
             entries: entries(),
             smooth: smooth(robot),
+            links: OnceLock::new(),
             tool: OnceLock::new(),
             gravity: OnceLock::new(),
             gravity_of_root: OnceLock::new(),
@@ -137,6 +140,11 @@ impl Effects {
 
     fn is_revolute(&self, joint: usize) -> bool {
         self.kind(joint) == JointKind::Revolute
+    }
+
+    fn links(&self) -> &Linear {
+        self.links
+            .get_or_init(|| geometry::rigid(&self.robot.mechanism, |_, _| true))
     }
 
     fn tool(&self) -> &Linear {

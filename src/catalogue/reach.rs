@@ -74,6 +74,7 @@ pub(super) fn plain(joints: Vec<usize>) -> Hypothesis {
         joints,
         grid: vec![vec![]],
         bounds: vec![],
+        least: 0.0,
     }
 }
 
@@ -88,6 +89,7 @@ pub(super) fn shaped(joints: Vec<usize>, grid: Vec<f64>) -> Hypothesis {
         joints,
         bounds: vec![ends(&grid)],
         grid: grid.into_iter().map(|value| vec![value]).collect(),
+        least: 0.0,
     }
 }
 

@@ -51,6 +51,9 @@ pub struct Hypothesis {
     /// Bounds of each shape parameter, for refinement between grid points; one whose ends are
     /// equal (the side of an end stop) is not refined.
     pub bounds: Vec<Range<f64>>,
+    /// Size that its only parameter must have to be believed, since the log is no more exact: a
+    /// shift in time by a sample or so may be its logger's. Zero where the log does not limit it.
+    pub least: f64,
 }
 
 /// Signals along a log (or a simulated motion) at its full rate, filtered as the regressor's are.

@@ -8,7 +8,7 @@ use crate::model::IdentificationModel;
 use crate::observe::Motion;
 
 /// Cut-off of the low-pass that stands in for a simulation, Hz.
-const SMOOTH_HZ: f64 = 12.0;
+pub(super) const SMOOTH_HZ: f64 = 12.0;
 
 /// How far a simulated motion may be from the measured one, as a part of the measured one's
 /// standard deviation: beyond, its controller is not the one that ran.

@@ -89,6 +89,16 @@ impl Joined {
         (0..self.joints()).filter_map(on).collect()
     }
 
+    /// Pulses at the reversals of each joint.
+    pub fn reversals(&self) -> Vec<Vec<f64>> {
+        let mut all = vec![Vec::with_capacity(self.rows()); self.joints()];
+        for track in &self.tracks {
+            let of_track = all.iter_mut().zip(track.reversals());
+            of_track.for_each(|(all, more)| all.extend(more));
+        }
+        all
+    }
+
     /// \\( W X \\) of each joint.
     pub fn product(&self, parameters: &[f64]) -> Vec<Vec<f64>> {
         let of_joint = |joint: usize| {

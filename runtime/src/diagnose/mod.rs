@@ -103,7 +103,7 @@ pub fn diagnose(
     progress.step("fitting the null model and its noise, for good");
     let null = null::null(model, (&joined, &instruments), &prior);
     let Null { noise, system, .. } = &null;
-    let parameters = system.solution();
+    let parameters = null::parameters(model, system);
     let predicted = Predictions {
         train: joined.predict(model, &parameters),
         instruments: instruments.predict(model, &parameters),
@@ -130,7 +130,10 @@ pub fn diagnose(
     };
     doubts::check(&bench, &before, &other)?;
     progress.step(&format!("screening {} hypotheses", hypotheses.len()));
-    let search = Stepwise::new(bench, confirm.as_ref(), &before);
+    let beside = instruments::beside(model, &other, &before.parameters);
+    let confirm = confirm.zip(split(&beside).0);
+    let confirm = confirm.as_ref().map(|(own, beside)| (own, beside));
+    let search = Stepwise::new(bench, confirm, &before);
     let outcome = search.run(before.clone());
     progress.step("proving what was found");
     let predictions = other

@@ -62,7 +62,14 @@ pub(super) fn first_guess(
     prior: &Prior,
 ) -> Vec<f64> {
     let noise = unknown_noise(joined);
-    fit(model, (joined, joined), &noise, prior).solution()
+    parameters(model, &fit(model, (joined, joined), &noise, prior))
+}
+
+/// The np parameters of the model; behind them stand those of the reversals, one per joint.
+pub(super) fn parameters(model: &dyn IdentificationModel, system: &System) -> Vec<f64> {
+    let mut all = system.solution();
+    all.truncate(model.columns().len());
+    all
 }
 
 /// Noise before anything is known of it: a part of the torque.
@@ -93,7 +100,7 @@ pub(super) fn null(
     };
     let mut system = fit(model, (joined, instruments), &noise, prior);
     for _ in 0..PASSES {
-        let parameters = system.solution();
+        let parameters = parameters(model, &system);
         let product = joined.product(&parameters);
         if repeats.is_empty() {
             let predicted = instruments.predict(model, &parameters);
@@ -154,7 +161,13 @@ fn fit(
         column
     };
     let pair = |k: usize| (column(joined, k), column(instruments, k));
-    let pairs: Vec<Pair> = (0..model.columns().len()).map(pair).collect();
+    let mut pairs: Vec<Pair> = (0..model.columns().len()).map(pair).collect();
+    // Nobody's parameters: what joints that stick at their reversals do.
+    let pulses = joined.reversals().into_iter().zip(instruments.reversals());
+    for (joint, (own, beside)) in pulses.enumerate() {
+        let white = |rows: Vec<f64>| joined.whiten(&[(joint, rows)], noise);
+        pairs.push((white(own), white(beside)));
+    }
     System::new(joined.rows(), y).with(&pairs)
 }
 
@@ -176,6 +189,7 @@ fn generic_columns(
     joined: &Joined,
     predicted: &[Predicted],
 ) -> Vec<Vec<Vec<f64>>> {
+    let pulses = joined.reversals();
     let of_joint = |(joint, kind): (usize, &crate::model::Joint)| {
         let base = (0..model.columns().len()).flat_map(|k| joined.base(k));
         let mut all: Vec<Vec<f64>> = base
@@ -190,6 +204,7 @@ fn generic_columns(
             );
         }
         all.extend(own);
+        all.push(pulses[joint].clone());
         all
     };
     model.joints().iter().enumerate().map(of_joint).collect()

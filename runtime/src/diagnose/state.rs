@@ -1,11 +1,12 @@
 //! The model with the effects that it has by now, fitted.
 
 use super::catalogue::{Catalogue, ColumnsAlong, EntryKind, Hypothesis};
+use super::instruments::SMOOTH_HZ;
 use super::joined::Joined;
 use super::linear::add_scaled;
 use super::noise::Noise;
 use super::system::{Pair, Sparse, System};
-use super::track::{Decimated, Predicted, Track};
+use super::track::{Decimated, Instead, Predicted, Track};
 use crate::model::IdentificationModel;
 
 /// Rounds in which columns that depend on the model are rebuilt.
@@ -125,7 +126,8 @@ impl<'a> Bench<'a> {
         let system = self.null.with(&all);
         let np = self.model.columns().len();
         let mut solution = system.solution();
-        let added = solution.split_off(np);
+        let added = solution.split_off(np + self.model.joints().len());
+        solution.truncate(np);
         let sigmas = system.sigmas(added.len());
         let mut first = 0;
         for effect in &mut effects {
@@ -209,13 +211,22 @@ impl<'a> Bench<'a> {
         rows
     }
 
-    /// Torque that a state predicts along a track at its full rate, by joint.
+    /// Torque that a state predicts along a track at its full rate, by joint. Columns that
+    /// differentiate the model's torque, or have a memory, follow the smooth part of the motion.
     pub fn torque(&self, state: &State, track: &Track) -> Vec<Vec<f64>> {
-        let one = Joined::new(vec![track.clone()]);
-        let predicted = self.predicted(&one, &state.parameters, &state.effects);
         let mut torque = track.predict(self.model, &state.parameters).model;
-        for predicted in &predicted {
-            self.add(track, state.effects.iter(), predicted, &mut torque);
+        let smooth = track.beside(self.model, &Instead::Below(SMOOTH_HZ));
+        let smooth = smooth.unwrap_or_else(|_| track.clone());
+        let (plain, other): (Vec<&Effect>, Vec<&Effect>) = state
+            .effects
+            .iter()
+            .partition(|effect| self.kind(effect.number) == EntryKind::Static);
+        for (along, effects) in [(track, plain), (&smooth, other)] {
+            let one = Joined::new(vec![along.clone()]);
+            let predicted = self.predicted(&one, &state.parameters, &state.effects);
+            for predicted in &predicted {
+                self.add(along, effects.iter().copied(), predicted, &mut torque);
+            }
         }
         torque.iter_mut().for_each(|torque| track.as_logged(torque));
         torque

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::catalogue::{ColumnsAlong, EntryKind};
 use super::joined::Joined;
-use super::linear::chi_square_survival;
+use super::linear::{add_scaled, chi_square_survival};
 use super::screen::{Candidate, Contender};
 use super::state::{Bench, State};
 use super::system::Pair;
@@ -86,10 +86,62 @@ pub(super) struct Outcome {
     pub ranked: Vec<Ranked>,
 }
 
+/// What an effect did on another motion instead of what it promised.
+#[derive(Clone, Copy, Debug)]
+enum Broken {
+    /// Gain in the whitened sum of squares, and what the columns promised.
+    Promise { gained: f64, promised: f64 },
+    /// Factor by which the plain torque error of its joints grew.
+    Worse(f64),
+}
+
+impl Broken {
+    fn why(self, trained: f64) -> String {
+        match self {
+            Broken::Promise { gained, promised } => format!(
+                "it improves the training log (by {trained:.0}) and does not keep its promise on \
+                 the validation log: {gained:.0} of {promised:.0}"
+            ),
+            Broken::Worse(factor) => format!(
+                "it raises the torque error of its joints on the validation log by {:.1} %",
+                100.0 * (factor - 1.0)
+            ),
+        }
+    }
+}
+
+/// Whether a change of the predicted rows does on another motion what it should: `change` is its
+/// product with the residual before, and its square.
+fn kept(
+    confirm: &Joined,
+    joints: &[usize],
+    (before, after): (&[Vec<f64>], &[Vec<f64>]),
+    (along, promised): (f64, f64),
+) -> Result<(), Broken> {
+    let gained = 2.0 * along - promised;
+    if gained < CONFIRMED * promised - DOUBT * promised.sqrt() {
+        return Err(Broken::Promise { gained, promised });
+    }
+    let error = |rows: &[Vec<f64>]| -> f64 {
+        let of_joint = |&joint: &usize| -> f64 {
+            let measured = confirm.measured(joint);
+            let pairs = measured.iter().zip(&rows[joint]);
+            let weighted = confirm.weights[joint].iter().zip(pairs);
+            weighted.map(|(w, (y, p))| w * (y - p).powi(2)).sum()
+        };
+        joints.iter().map(of_joint).sum::<f64>().sqrt()
+    };
+    match error(after) / error(before) {
+        factor if factor > WORSE => Err(Broken::Worse(factor)),
+        _ => Ok(()),
+    }
+}
+
 /// The search and what it has found so far.
 pub(super) struct Stepwise<'a> {
     pub bench: Bench<'a>,
-    pub confirm: Option<&'a Joined>,
+    /// Logs of another motion, and the motions of their instruments.
+    pub confirm: Option<(&'a Joined, &'a Joined)>,
     /// Candidates of static effects, which never change.
     fixed: Vec<Candidate>,
     dependent: Vec<usize>,
@@ -99,7 +151,7 @@ pub(super) struct Stepwise<'a> {
 
 impl<'a> Stepwise<'a> {
     /// Prepares the search: columns of all static hypotheses.
-    pub fn new(bench: Bench<'a>, confirm: Option<&'a Joined>, null: &State) -> Self {
+    pub fn new(bench: Bench<'a>, confirm: Option<(&'a Joined, &'a Joined)>, null: &State) -> Self {
         let all = 0..bench.hypotheses.len();
         let (fixed, dependent): (Vec<usize>, Vec<usize>) =
             all.partition(|number| bench.kind(*number) == EntryKind::Static);
@@ -240,9 +292,14 @@ impl<'a> Stepwise<'a> {
             .iter()
             .map(|v| v.unwrap_or(0.0))
             .collect();
-        self.bench
-            .catalogue
-            .implausible(&self.bench.hypotheses[*number], shape, &values)
+        let hypothesis = &self.bench.hypotheses[*number];
+        if values
+            .first()
+            .is_some_and(|value| value.abs() < hypothesis.least)
+        {
+            return Some("it is smaller than what the log itself leaves open".to_owned());
+        }
+        self.bench.catalogue.implausible(hypothesis, shape, &values)
     }
 
     /// Corrected for the number of hypotheses tried.
@@ -271,46 +328,31 @@ impl<'a> Stepwise<'a> {
                 "along the measured motion nothing but noise is left of its columns".to_owned(),
             );
         }
-        let Some(confirm) = self.confirm else {
+        let Some((confirm, beside)) = self.confirm else {
             return Ok(next);
         };
+        let joints = contender.candidate.columns.iter();
+        let joints: Vec<usize> = joints.flat_map(|c| c.0.iter().map(|p| p.0)).collect();
         let before = self.bench.rows(state, confirm);
-        let after = self.bench.rows(&next, confirm);
-        let (along, promised) = self.bench.difference(confirm, (&before, &after));
-        let gained = 2.0 * along - promised;
-        if gained < CONFIRMED * promised - DOUBT * promised.sqrt() {
-            return Err(format!(
-                "it improves the training log (by {:.0}) and does not keep its promise on the \
-                 validation log: {gained:.0} of {promised:.0}",
-                contender.gain.square
-            ));
-        }
-        let joints = contender
-            .candidate
-            .columns
-            .iter()
-            .flat_map(|c| c.0.iter().map(|p| p.0));
-        let joints: Vec<usize> = joints.collect();
-        let error = |rows: &[Vec<f64>]| -> f64 {
-            let of_joint = |&joint: &usize| -> f64 {
-                let weights = confirm.weights[joint].iter();
-                let measured = confirm.measured(joint);
-                let pairs = measured.iter().zip(&rows[joint]);
-                weights
-                    .zip(pairs)
-                    .map(|(w, (y, p))| w * (y - p).powi(2))
-                    .sum()
-            };
-            joints.iter().map(of_joint).sum::<f64>().sqrt()
+        let kept = |after: &[Vec<f64>]| -> Result<(), Broken> {
+            let change = self.bench.difference(confirm, (&before, after));
+            kept(confirm, &joints, (&before, after), change)
         };
-        let (before, after) = (error(&before), error(&after));
-        if after > WORSE * before {
-            return Err(format!(
-                "it raises the torque error of its joints on the validation log by {:.1} %",
-                100.0 * (after / before - 1.0)
-            ));
-        }
-        Ok(next)
+        // Along the measured motion, or, where its noise drowns the columns, along one without.
+        let after = self.bench.rows(&next, confirm);
+        kept(&after)
+            .or_else(|broken| {
+                let mut after = before.clone();
+                let without = self.bench.rows(state, beside);
+                let with = self.bench.rows(&next, beside);
+                for (sum, (with, without)) in after.iter_mut().zip(with.iter().zip(&without)) {
+                    add_scaled(sum, 1.0, with);
+                    add_scaled(sum, -1.0, without);
+                }
+                kept(&after).map_err(|_| broken)
+            })
+            .map(|()| next)
+            .map_err(|broken| broken.why(contender.gain.square))
     }
 
     /// Of the explanations that cannot be told from the best, the simplest; and its rivals.

@@ -4,6 +4,7 @@
 use std::ops::Range;
 
 use crate::observe::{Filtering, Motion};
+use crate::signal::central_difference;
 
 /// What rows beside a standstill count for: friction at rest is any torque below its limit, and the
 /// filters spread what it does there.
@@ -27,6 +28,14 @@ pub(super) fn dead_band(motion: &Motion, steps: &[f64], filtering: &Filtering) -
         (UNCERTAIN * white * noise).max(SLOW * top)
     };
     motion.qd.iter().zip(steps).map(of_joint).collect()
+}
+
+/// A pulse at each reversal of a joint, of area two and the sign of the new direction. A joint that
+/// sticks there is held by whatever balances it, and not by a friction that turns round with its
+/// velocity; to first order that shifts the turn in time.
+pub(super) fn reversals(qd: &[f64], band: f64, rate_hz: f64) -> Vec<f64> {
+    let side: Vec<f64> = qd.iter().map(|v| (v / band).clamp(-1.0, 1.0)).collect();
+    central_difference(&side, rate_hz)
 }
 
 /// What rows count for: nothing near samples that cannot be believed, less near rest.

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::catalogue::{ColumnsAlong, Hypothesis, Signals, TorqueColumn};
 use super::rest::Rested;
-use super::still::{dead_band, weights};
+use super::still::{dead_band, reversals, weights};
 use crate::log::{Companion, Recording, resolution};
 use crate::model::{ColumnKind, IdentificationModel, Output};
 use crate::observe::{
@@ -228,6 +228,13 @@ impl Track {
         self.decimator
             .values(series, &self.kept)
             .unwrap_or_default()
+    }
+
+    /// Pulses at the reversals of each joint, decimated.
+    pub fn reversals(&self) -> Vec<Vec<f64>> {
+        let joints = self.motion.qd.iter().zip(&self.dead_band);
+        let pulses = joints.map(|(qd, band)| reversals(qd, *band, self.motion.rate_hz));
+        self.decimate(&pulses.collect::<Vec<_>>())
     }
 
     /// Columns of a hypothesis for each of `shapes`, decimated.

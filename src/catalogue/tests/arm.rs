@@ -153,6 +153,7 @@ impl Course {
             joints: joints.to_vec(),
             grid: vec![],
             bounds: vec![],
+            least: 0.0,
         };
         effects.columns(&hypothesis, shape, &self.signals())
     }
