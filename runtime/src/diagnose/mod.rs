@@ -8,6 +8,7 @@
 
 mod catalogue;
 mod closed_loop;
+mod confirm;
 mod doubts;
 mod generic;
 mod instruments;

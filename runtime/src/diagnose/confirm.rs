@@ -1,0 +1,118 @@
+//! Whether an effect keeps on another motion what it promises from the training log.
+
+use super::joined::Joined;
+use super::linear::add_scaled;
+use super::screen::Contender;
+use super::state::State;
+use super::stepwise::{Named, Stepwise};
+
+/// Share of the gain that the columns promise on another motion which must be there.
+const CONFIRMED: f64 = 1.0 / 3.0;
+
+/// Standard deviations of that gain's own noise, which is twice the root of the promise, times two:
+/// what a promise is too small to decide, the training log decides.
+const DOUBT: f64 = 3.0;
+
+/// By how much an effect may raise the plain torque error on another motion, as a factor: what
+/// only noise decides.
+const WORSE: f64 = 1.005;
+
+/// What an effect did on another motion instead of what it promised.
+#[derive(Clone, Copy, Debug)]
+enum Broken {
+    /// Gain in the whitened sum of squares, and what the columns promised.
+    Promise { gained: f64, promised: f64 },
+    /// Factor by which the plain torque error of its joints grew.
+    Worse(f64),
+}
+
+impl Broken {
+    fn why(self, trained: f64) -> String {
+        match self {
+            Broken::Promise { gained, promised } => format!(
+                "it improves the training log (by {trained:.0}) and does not keep its promise on \
+                 the validation log: {gained:.0} of {promised:.0}"
+            ),
+            Broken::Worse(factor) => format!(
+                "it raises the torque error of its joints on the validation log by {:.1} %",
+                100.0 * (factor - 1.0)
+            ),
+        }
+    }
+}
+
+/// Whether a change of the predicted rows does on another motion what it should: `change` is its
+/// product with the residual before, and its square.
+fn kept(
+    confirm: &Joined,
+    joints: &[usize],
+    (before, after): (&[Vec<f64>], &[Vec<f64>]),
+    (along, promised): (f64, f64),
+) -> Result<(), Broken> {
+    let gained = 2.0 * along - promised;
+    if gained < CONFIRMED * promised - DOUBT * promised.sqrt() {
+        return Err(Broken::Promise { gained, promised });
+    }
+    let error = |rows: &[Vec<f64>]| -> f64 {
+        let of_joint = |&joint: &usize| -> f64 {
+            let measured = confirm.measured(joint);
+            let pairs = measured.iter().zip(&rows[joint]);
+            let weighted = confirm.weights[joint].iter().zip(pairs);
+            weighted.map(|(w, (y, p))| w * (y - p).powi(2)).sum()
+        };
+        joints.iter().map(of_joint).sum::<f64>().sqrt()
+    };
+    match error(after) / error(before) {
+        factor if factor > WORSE => Err(Broken::Worse(factor)),
+        _ => Ok(()),
+    }
+}
+
+impl Stepwise<'_> {
+    /// The state with a contender, if it keeps its promise on another motion.
+    pub(super) fn confirmed(
+        &self,
+        contender: &Contender,
+        state: &State,
+        named: &[Named],
+    ) -> Result<State, String> {
+        let mut chosen: Vec<(usize, Vec<f64>)> =
+            named.iter().map(|n| (n.number, n.shape.clone())).collect();
+        chosen.push((
+            contender.candidate.number,
+            contender.candidate.shape.clone(),
+        ));
+        let next = self.bench.settle(&chosen, &state.predicted);
+        let added = next.effects.last();
+        if added.is_some_and(|effect| effect.sigmas.iter().all(Option::is_none)) {
+            return Err(
+                "along the measured motion nothing but noise is left of its columns".to_owned(),
+            );
+        }
+        let Some((confirm, beside)) = self.confirm else {
+            return Ok(next);
+        };
+        let joints = contender.candidate.columns.iter();
+        let joints: Vec<usize> = joints.flat_map(|c| c.0.iter().map(|p| p.0)).collect();
+        let before = self.bench.rows(state, confirm);
+        let kept = |after: &[Vec<f64>]| -> Result<(), Broken> {
+            let change = self.bench.difference(confirm, (&before, after));
+            kept(confirm, &joints, (&before, after), change)
+        };
+        // Along the measured motion, or, where its noise drowns the columns, along one without.
+        let after = self.bench.rows(&next, confirm);
+        kept(&after)
+            .or_else(|broken| {
+                let mut after = before.clone();
+                let without = self.bench.rows(state, beside);
+                let with = self.bench.rows(&next, beside);
+                for (sum, (with, without)) in after.iter_mut().zip(with.iter().zip(&without)) {
+                    add_scaled(sum, 1.0, with);
+                    add_scaled(sum, -1.0, without);
+                }
+                kept(&after).map_err(|_| broken)
+            })
+            .map(|()| next)
+            .map_err(|broken| broken.why(contender.gain.square))
+    }
+}
