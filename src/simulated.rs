@@ -10,7 +10,7 @@ use idim_runtime::model::{IdentificationModel, JointKind};
 use idim_runtime::report::{Change, Diagnosis, FoundEffect, GapCurves, Rms};
 use idim_runtime::simulate::{
     ClosedLoop, Drift, Grid, LoadFriction, Method, Options, Plant, SimulateError, State, beginning,
-    controlled, off_reference, rigid_only,
+    controlled, feedforward_of, off_reference,
 };
 
 use crate::catalogue::Extension;
@@ -112,7 +112,7 @@ pub fn motions(
         .collect();
     let course = Course {
         model,
-        rigid: feedforward(model, &before),
+        rigid: feedforward_of(model, &before),
         reference,
         controller,
         log,
@@ -140,15 +140,6 @@ pub fn motions(
         before: before.map_err(failed)?,
         after: after.map_err(failed)?,
     }))
-}
-
-/// The parameters of the controller's feedforward: the described bodies, or else the rigid part.
-fn feedforward(model: &dyn IdentificationModel, parameters: &[f64]) -> Vec<f64> {
-    let described = &model.knowledge().rigid;
-    match described.is_empty() {
-        true => rigid_only(model, parameters),
-        false => described.to_vec(),
-    }
 }
 
 /// What both simulations follow.

@@ -157,6 +157,16 @@ impl<'a> Along<'a> {
         self.signals.qd[joint].iter().map(sign).collect()
     }
 
+    /// A displacement by its positions.
+    pub fn displacement(&self, position: Vec<f64>) -> Displacement {
+        let velocity = self.rate(&position);
+        Displacement {
+            acceleration: self.rate(&velocity),
+            position,
+            velocity,
+        }
+    }
+
     /// Derivative of a series in time.
     pub fn rate(&self, series: &[f64]) -> Vec<f64> {
         central_difference(series, self.signals.rate_hz)

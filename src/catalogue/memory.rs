@@ -6,7 +6,7 @@ use idim_codegen::catalogue::EffectKind;
 use idim_runtime::diagnose::{Entry, EntryKind, Hypothesis, TorqueColumn};
 use idim_runtime::observe::dahl;
 
-use super::along::{Along, Displacement};
+use super::along::Along;
 use super::drive::direction;
 use super::evaluate::Motion;
 use super::reach::{geometric, plain};
@@ -130,13 +130,8 @@ fn elasticity(along: &Along<'_>, joints: &[usize], shape: &[f64]) -> Vec<TorqueC
     };
     let carried = &along.carried()[joint];
     let position = resonance(carried, along.signals.rate_hz, TAU * f, damping);
-    let position: Vec<f64> = position.iter().map(|y| -y).collect();
-    let velocity = along.rate(&position);
-    let by = Displacement {
-        acceleration: along.rate(&velocity),
-        position,
-        velocity,
-    };
+    let position = position.into_iter().map(|y| -y).collect();
+    let by = along.displacement(position);
     vec![TorqueColumn {
         name: format!("CE{}", joint + 1),
         unit: along.by_kind(joint, "rad/(N m)", "m/N"),
@@ -195,13 +190,8 @@ fn backlash(along: &Along<'_>, joints: &[usize], _: &[f64]) -> Vec<TorqueColumn>
         return Vec::new();
     };
     let side = direction(&along.carried()[joint]);
-    let position: Vec<f64> = side.iter().map(|side| -0.5 * side).collect();
-    let velocity = along.rate(&position);
-    let by = Displacement {
-        acceleration: along.rate(&velocity),
-        position,
-        velocity,
-    };
+    let position = side.into_iter().map(|side| -0.5 * side).collect();
+    let by = along.displacement(position);
     vec![TorqueColumn {
         name: format!("gap{}", joint + 1),
         unit: along.by_kind(joint, "rad", "m"),

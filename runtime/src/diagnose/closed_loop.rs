@@ -5,7 +5,7 @@ use crate::log::Start;
 use crate::model::IdentificationModel;
 use crate::observe::Motion;
 use crate::simulate::{
-    Grid, Relaxed, SimulateError, Trajectory, inverse_dynamics, relaxed, rigid_only,
+    Grid, Relaxed, SimulateError, Trajectory, feedforward_of, inverse_dynamics, relaxed,
 };
 
 /// How much steeper than the controller's damping friction may run through rest; rounds over the
@@ -33,20 +33,16 @@ pub(super) fn simulated(
         .reference
         .as_ref()
         .zip(companion.controller.as_ref())?;
-    if !model.presliding().is_empty() {
+    // A slip state has no place in rounds over a whole motion; gains of another robot are none.
+    if !model.presliding().is_empty() || controller.kd.len() != track.dead_band.len() {
         return None;
     }
-    let described = &model.knowledge().rigid;
-    let rigid = match described.is_empty() {
-        true => rigid_only(model, parameters),
-        false => described.to_vec(),
-    };
     let begin: Vec<f64> = recording.q.iter().map(|q| q[0]).collect();
     let soft = softened(track, model, parameters, &controller.kd).ok()?;
     let plan = Relaxed {
         model,
         parameters,
-        rigid: &rigid,
+        rigid: &feedforward_of(model, parameters),
         reference,
         controller,
         grid: Grid::of(recording),

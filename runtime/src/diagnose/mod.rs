@@ -1,7 +1,8 @@
 //! From a gap between model and measurement to a named effect.
 //!
-//! The way: logs -> `track` rows at a rate that shows colour -> `null` model and its noise,
-//! from what does not repeat (`repeats`) or around a generic model (`generic`,
+//! The way: logs -> `track` rows at a rate that shows colour, and beside them those along a motion
+//! without noise (`instruments`, `closed_loop`) -> `null` model and its noise, from what does not
+//! repeat (`repeats`) or around a generic model (`generic`,
 //! `likelihood`) -> `screen` every hypothesis of a [`Catalogue`] -> `stepwise` search,
 //! confirmed on another motion -> `verdict` -> `proof` on data that neither fitted nor
 //! confirmed. This room knows no effect by name; torque never enters a column.
@@ -97,11 +98,11 @@ pub fn diagnose(
     check_length(model, &joined)?;
     let other = Joined::new(tracks(validate)?);
     let (confirm, proof) = split(&other);
-    progress.step("fitting the null model and its noise");
+    progress.step("simulating the motion without noise");
     let prior = Prior::of(model, model.knowledge());
     let guess = null::first_guess(model, &joined, &prior);
     let instruments = instruments::beside(model, &joined, &guess);
-    progress.step("fitting the null model and its noise, for good");
+    progress.step("fitting the null model and its noise");
     let null = null::null(model, (&joined, &instruments), &prior);
     let Null { noise, system, .. } = &null;
     let parameters = null::parameters(model, system);

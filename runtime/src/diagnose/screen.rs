@@ -192,26 +192,6 @@ impl Bench<'_> {
     }
 }
 
-/// A column as the smooth part of the motion makes it. Position noise stands both in a column made
-/// of accelerations and, through the controller, in the torque; above the band of the motion there is
-/// nothing else, and what only this shares explains is no effect.
-pub(super) fn smoothed(rows: &[f64]) -> Vec<f64> {
-    const WIDTH: f64 = 1.0;
-    let kernel: Vec<f64> = (0..6)
-        .map(|k| (-0.5 * (f64::from(k) / WIDTH).powi(2)).exp())
-        .collect();
-    let total: f64 = kernel[0] + 2.0 * kernel[1..].iter().sum::<f64>();
-    let last = rows.len().saturating_sub(1);
-    let at = |t: usize| {
-        let sides = kernel.iter().enumerate().skip(1);
-        let sum: f64 = sides
-            .map(|(k, w)| w * (rows[t.saturating_sub(k)] + rows[(t + k).min(last)]))
-            .sum();
-        (kernel[0] * rows[t] + sum) / total
-    };
-    (0..rows.len()).map(at).collect()
-}
-
 /// Places of a shape that the grid varies.
 fn searched(grid: &[Vec<f64>]) -> Vec<usize> {
     let Some(first) = grid.first() else {

@@ -4,7 +4,6 @@ use super::generic;
 use super::noise::{ORDER, effective};
 use super::null::Null;
 use super::repeats::{Lack, lack_of_fit, pure_error};
-use super::screen::smoothed;
 use super::state::{Bench, State};
 use super::system::Sparse;
 
@@ -19,6 +18,10 @@ const UNEVEN: f64 = 2.0;
 /// Excess of the residual's variance over the noise's below which a lack of fit, however
 /// significant, is left to the noise model.
 const MEANINGFUL: f64 = 0.06;
+
+/// Width of the Gaussian kernel over the rows, one standard deviation: a model error is slower than
+/// most of the noise.
+const WIDTH: f64 = 1.0;
 
 /// Degrees of freedom that smoothing leaves of each row: one over the effective width of its kernel.
 const SMOOTH_FREEDOM: f64 = 0.28;
@@ -53,6 +56,23 @@ pub(super) fn lacks(bench: &Bench<'_>, null: &Null, state: &State) -> Vec<Lack> 
             lack_of_fit(&error, state.system.leverage(joint))
         })
         .collect()
+}
+
+/// Rows without what changes from one to the next.
+fn smoothed(rows: &[f64]) -> Vec<f64> {
+    let kernel: Vec<f64> = (0..6)
+        .map(|k| (-0.5 * (f64::from(k) / WIDTH).powi(2)).exp())
+        .collect();
+    let total: f64 = kernel[0] + 2.0 * kernel[1..].iter().sum::<f64>();
+    let last = rows.len().saturating_sub(1);
+    let at = |t: usize| {
+        let sides = kernel.iter().enumerate().skip(1);
+        let sum: f64 = sides
+            .map(|(k, w)| w * (rows[t.saturating_sub(k)] + rows[(t + k).min(last)]))
+            .sum();
+        (kernel[0] * rows[t] + sum) / total
+    };
+    (0..rows.len()).map(at).collect()
 }
 
 /// Weights with the rows about those that count for less left out.

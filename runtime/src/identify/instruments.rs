@@ -8,7 +8,7 @@ use crate::log::{Companion, Recording};
 use crate::model::IdentificationModel;
 use crate::observe::{Equations, ModelKind};
 use crate::report::{Identification, InstrumentedFit, InstrumentedValue, ModelResult, Validation};
-use crate::simulate::{Options as Simulating, like, rigid_only};
+use crate::simulate::{Options as Simulating, feedforward_of, like};
 
 /// Most simulations of each log.
 const ROUNDS: usize = 10;
@@ -150,11 +150,7 @@ impl Search<'_> {
 
     /// The equations along the simulated logs, without any noise.
     fn simulated(&self, x: &[f64]) -> Result<Observed, IdentifyError> {
-        let known = &self.model.knowledge().rigid;
-        let rigid = match known.is_empty() {
-            true => rigid_only(self.model, x),
-            false => known.to_vec(),
-        };
+        let rigid = feedforward_of(self.model, x);
         Observed::join(self.train.iter().map(|(log, companion)| {
             self.progress.step(&format!("simulating {}", log.name));
             let options = Simulating::default();

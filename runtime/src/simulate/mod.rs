@@ -62,7 +62,7 @@ pub use inverse::inverse_dynamics;
 pub use like::{beginning, ideal, like};
 pub use open_loop::{OpenLoop, free_motion, open_loop};
 pub use options::{Grid, Method, Options, State};
-pub use parameters::{in_order, named_values, rigid_only};
+pub use parameters::{feedforward_of, in_order, named_values, rigid_only};
 pub use parting::{Parting, off_controller, off_reference, parting};
 pub use plant::{Drive, Encoder, Plant};
 pub(crate) use relaxed::{Relaxed, relaxed};

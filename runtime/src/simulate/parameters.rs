@@ -86,6 +86,16 @@ pub fn in_order(
     })
 }
 
+/// Parameters of a controller's feedforward: the rigid bodies as they are described, or, where the
+/// description has none, those of the given parameters.
+pub fn feedforward_of(model: &dyn IdentificationModel, parameters: &[f64]) -> Vec<f64> {
+    let described = &model.knowledge().rigid;
+    match described.is_empty() {
+        true => rigid_only(model, parameters),
+        false => described.to_vec(),
+    }
+}
+
 /// Parameters of the rigid bodies alone: those of friction, rotors and other effects are zero. A
 /// rotor inertia that is regrouped with an inertia stays in it.
 pub fn rigid_only(model: &dyn IdentificationModel, parameters: &[f64]) -> Vec<f64> {

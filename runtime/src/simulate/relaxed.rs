@@ -55,7 +55,7 @@ pub(crate) fn relaxed(plan: &Relaxed<'_>, needed: Needed<'_>) -> Result<Trajecto
     let reference = Trajectory::of(plan.reference, &plan.grid)?;
     let masses = masses(plan, &reference)?;
     let mut motion = reference.clone();
-    let mut last = f64::INFINITY;
+    let (mut farthest, mut last) = (0, f64::INFINITY);
     for round in 0..ROUNDS {
         let asked = asked(plan, &reference, &motion)?;
         let needed = needed(&motion);
@@ -65,12 +65,12 @@ pub(crate) fn relaxed(plan: &Relaxed<'_>, needed: Needed<'_>) -> Result<Trajecto
             .map(|(asked, needed)| asked.iter().zip(needed).map(|(a, n)| a - n).collect())
             .collect();
         let begin = plan.start.filter(|_| round == 0);
-        let moved = answer(plan, &masses, &rest, begin, &mut motion);
+        let (joint, moved) = answer(plan, &masses, &rest, begin, &mut motion);
         if moved < SETTLED {
             return Ok(motion);
         }
         let worse = moved > last && round > 3;
-        last = moved;
+        (farthest, last) = (joint, moved);
         if worse || !moved.is_finite() {
             break;
         }
@@ -79,7 +79,7 @@ pub(crate) fn relaxed(plan: &Relaxed<'_>, needed: Needed<'_>) -> Result<Trajecto
         return Ok(motion);
     }
     Err(SimulateError::Diverged {
-        joint: "some joint".into(),
+        joint: plan.model.joints()[farthest].name.to_string(),
         what: "the motion of the round before",
         second: plan.grid.start,
     })
@@ -131,15 +131,15 @@ fn asked(
     Ok(all)
 }
 
-/// Moves the motion by the loop's answer to a rest of torque, by Stoermer's and Verlet's rule; how
-/// far that was at most, as a part of each joint's range.
+/// Moves the motion by the loop's answer to a rest of torque, by Stoermer's and Verlet's rule: the
+/// joint that this moved farthest, and how far, as a part of its range.
 fn answer(
     plan: &Relaxed<'_>,
     masses: &[[Vec<f64>; 2]],
     rest: &[Vec<f64>],
     begin: Option<&[f64]>,
     motion: &mut Trajectory,
-) -> f64 {
+) -> (usize, f64) {
     let n = rest.len();
     let step = 1.0 / plan.grid.rate_hz;
     let Controller {
@@ -155,7 +155,7 @@ fn answer(
         .collect();
     let (mut speed, mut seen, mut before) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
     let (mut force, mut slope, mut stiff) = (vec![0.0; n], vec![0.0; n], vec![0.0; n * n]);
-    let mut farthest = 0.0_f64;
+    let mut farthest = (0, 0.0);
     for k in 0..plan.grid.len {
         for joint in 0..n {
             seen[joint] += part * (speed[joint] - seen[joint]);
@@ -172,7 +172,7 @@ fn answer(
             stiff.copy_from_slice(mass);
             (0..n).for_each(|joint| stiff[joint * n + joint] += 0.5 * step * slope[joint]);
             if factor(&mut stiff, n).is_err() {
-                return f64::NAN;
+                return (0, f64::NAN);
             }
             solve(&stiff, n, &mut force);
         }
@@ -181,7 +181,10 @@ fn answer(
             motion.q[joint][k] += at[joint];
             motion.qd[joint][k] += 0.5 * (speed[joint] + next);
             motion.qdd[joint][k] += force[joint];
-            farthest = farthest.max(at[joint].abs() / range[joint]);
+            let far = at[joint].abs() / range[joint];
+            if far > farthest.1 || far.is_nan() {
+                farthest = (joint, far);
+            }
             speed[joint] = next;
             at[joint] += step * next;
         }
