@@ -64,6 +64,16 @@ pub(super) fn warnings((train, validate): (&[Log], &[Log])) -> Vec<String> {
     all
 }
 
+/// Places of the validation logs that are no training log: those that can confirm and prove.
+pub(super) fn fresh((train, validate): (&[Log], &[Log])) -> Vec<usize> {
+    let trained = |log: &Log| {
+        let mut doubts = train.iter().filter_map(|other| known(log, other));
+        doubts.any(|doubt| matches!(doubt, Doubt::Same { .. }))
+    };
+    let places = 0..validate.len();
+    places.filter(|&place| !trained(&validate[place])).collect()
+}
+
 /// Whether a validation log is a training log, or a part of one.
 fn known(log: &Log, other: &Log) -> Option<Doubt> {
     let (a, b) = (&log.recording, &other.recording);

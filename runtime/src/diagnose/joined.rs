@@ -58,6 +58,12 @@ impl Joined {
         part
     }
 
+    /// Some of the logs, by their places.
+    pub fn only(&self, places: &[usize]) -> Joined {
+        let tracks = places.iter().filter_map(|&place| self.tracks.get(place));
+        Joined::new(tracks.cloned().collect())
+    }
+
     /// Rows of each joint.
     pub fn rows(&self) -> usize {
         self.segments.last().map_or(0, |segment| segment.end)

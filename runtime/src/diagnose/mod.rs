@@ -7,6 +7,7 @@
 //! confirmed on another motion -> `verdict` -> `proof` on data that neither fitted nor
 //! confirmed. This room knows no effect by name; torque never enters a column.
 
+mod absorbed;
 mod catalogue;
 mod closed_loop;
 mod confirm;
@@ -97,7 +98,8 @@ pub fn diagnose(
     let joined = Joined::new(tracks(train)?);
     check_length(model, &joined)?;
     let other = Joined::new(tracks(validate)?);
-    let (confirm, proof) = split(&other);
+    let fresh = doubts::fresh((train, validate));
+    let (confirm, proof) = split(&other.only(&fresh));
     progress.step("simulating the motion without noise");
     let prior = Prior::of(model, model.knowledge());
     let guess = null::first_guess(model, &joined, &prior);
@@ -133,7 +135,7 @@ pub fn diagnose(
     doubts::check(&bench, &before, &other)?;
     progress.step(&format!("screening {} hypotheses", hypotheses.len()));
     let beside = instruments::beside(model, &other, &before.parameters);
-    let confirm = confirm.zip(split(&beside).0);
+    let confirm = confirm.zip(split(&beside.only(&fresh)).0);
     let confirm = confirm.as_ref().map(|(own, beside)| (own, beside));
     let search = Stepwise::new(bench, confirm, &before);
     let outcome = search.run(before.clone());
@@ -205,9 +207,14 @@ fn check_length(model: &dyn IdentificationModel, joined: &Joined) -> Result<(), 
     if rows >= needs {
         return Ok(());
     }
+    let step = joined.tracks.first().map_or(0.0, Track::step);
+    let motions = joined.tracks.iter().map(|track| &track.motion);
+    let all: f64 = motions.map(|m| m.len as f64 / m.rate_hz).sum();
     Err(DiagnoseError::TooShort {
+        // What the filters need at the ends comes on top.
+        seconds: all + (needs - rows) as f64 * step,
         rows,
-        step_ms: 1e3 * joined.tracks.first().map_or(0.0, Track::step),
+        step_ms: 1e3 * step,
         needs,
         parameters,
     })

@@ -85,8 +85,7 @@ pub enum DiagnoseError {
     #[error(
         "the training logs have {rows} rows a joint (at {step_ms} ms); at least {needs} are needed \
          to tell {parameters} parameters and the noise from a missing effect: use a log of at least \
-         {seconds:.1} s of motion",
-        seconds = seconds(.needs, .step_ms)
+         {seconds:.1} s of motion"
     )]
     TooShort {
         /// Rows there are.
@@ -97,10 +96,7 @@ pub enum DiagnoseError {
         needs: usize,
         /// Parameters of the model.
         parameters: usize,
+        /// How long a log with as many rows would be, s.
+        seconds: f64,
     },
-}
-
-/// How long so many rows take, s.
-fn seconds(rows: &usize, step_ms: &f64) -> f64 {
-    *rows as f64 * step_ms / 1e3
 }

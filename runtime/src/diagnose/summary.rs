@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::absorbed::absorbed;
 use super::catalogue::Hypothesis;
 use super::joined::Joined;
 use super::null::Null;
@@ -69,7 +70,7 @@ pub(super) fn diagnosis(
         verdict,
         effects,
         ranking: ranking(bench, outcome),
-        rejected: rejected(bench, outcome),
+        rejected: rejected(bench, before, outcome),
         located: located.collect(),
         gap: Gap {
             torque: Change {
@@ -77,7 +78,7 @@ pub(super) fn diagnosis(
                 after: proof::fit(bench, &outcome.state, on),
             },
             simulation: None,
-            on: place(on, proof.is_some(), validate.len()),
+            on: place(on, proof.is_some(), doubts::fresh(asked.logs).len()),
         },
         parameters: refitted(bench, before, &outcome.state),
         warnings: doubts::warnings(asked.logs),
@@ -226,8 +227,10 @@ fn ranking(bench: &Bench<'_>, outcome: &Outcome) -> Vec<RankedEffect> {
         .collect()
 }
 
-fn rejected(bench: &Bench<'_>, outcome: &Outcome) -> Vec<RejectedEffect> {
-    let refused = outcome.refused.iter();
+/// What the search refused, and what it could not ask for.
+fn rejected(bench: &Bench<'_>, before: &State, outcome: &Outcome) -> Vec<RejectedEffect> {
+    let absorbed = absorbed(bench, before);
+    let refused = outcome.refused.iter().chain(&absorbed);
     refused
         .map(|refused| {
             let hypothesis = &bench.hypotheses[refused.number];

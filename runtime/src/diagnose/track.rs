@@ -16,6 +16,11 @@ use crate::observe::{
 use crate::settings::{Edges, Velocity};
 use crate::signal::{Decimator, SignalError};
 
+/// Reaches of the filters until what rings on from the ends of a log is below its noise, and the
+/// share of a log that is spared for it at most.
+const RINGING: usize = 6;
+const SPARED: f64 = 0.05;
+
 /// Torque of an effect along a log, decimated.
 #[derive(Clone, Debug)]
 pub(super) struct Decimated {
@@ -303,8 +308,11 @@ fn inner(motion: &Motion, filtering: &Filtering, decimator: &Decimator) -> Vec<u
         Edges::Scipy => 0,
         Edges::Matlab => filtering.trim * filtering.nd,
     };
-    // What the filters believe beyond the ends of the log reaches in so far.
-    let edge = 2 * filtering.reach(motion.rate_hz);
+    // What the filters believe beyond the ends of the log reaches in so far; where a log begins or
+    // ends in the middle of a motion that is wrong, and rings on.
+    let reach = filtering.reach(motion.rate_hz);
+    let edge = (RINGING * reach).min((SPARED * motion.len as f64) as usize);
+    let edge = edge.max(2 * reach);
     let (start, end) = ((start + more).max(edge), (end + more).max(edge));
     let inside = start..motion.len.saturating_sub(end);
     let mut kept = decimator.kept(motion.len);

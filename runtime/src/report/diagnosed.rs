@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::table::significant;
-use super::{Diagnosis, EffectParameter, FoundEffect, Verdict};
+use super::{Diagnosis, EffectParameter, FoundEffect, RejectedEffect, Verdict};
 
 /// Renders a diagnosis: the verdict, each effect with its parameters and how sure it is, where the
 /// gap is, how it shrinks, what was rejected. A function of the value alone.
@@ -18,10 +18,14 @@ pub fn diagnosed(diagnosis: &Diagnosis) -> String {
     if !diagnosis.rejected.is_empty() {
         text.push_str("\nlooked at and not taken\n");
     }
-    // Writing to a String does not fail.
-    for rejected in &diagnosis.rejected {
-        let place = place(rejected.joint.as_deref(), &rejected.joints);
-        let _ = writeln!(text, "  {}{place}: {}", rejected.effect, rejected.why);
+    // What one reason speaks against stands together. Writing to a String does not fail.
+    for alike in diagnosis.rejected.chunk_by(|a, b| a.why == b.why) {
+        let name = |rejected: &RejectedEffect| {
+            let place = place(rejected.joint.as_deref(), &rejected.joints);
+            format!("{}{place}", rejected.effect)
+        };
+        let names: Vec<String> = alike.iter().map(name).collect();
+        let _ = writeln!(text, "  {}: {}", names.join(", "), alike[0].why);
     }
     for (k, warning) in diagnosis.warnings.iter().enumerate() {
         let gap = if k == 0 { "\n" } else { "" };
