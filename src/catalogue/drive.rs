@@ -19,17 +19,31 @@ pub(super) static DRIVE_GAIN: Effect = Effect {
         hidden_by_parameters: true,
     },
     hypotheses: |_, reach| reach.each_joint(),
-    columns: |along, joints, _| {
-        let column =
-            |&joint: &usize| along.column("DG", "1", joint, along.signals.tau_model[joint].clone());
-        joints.iter().map(column).collect()
-    },
+    columns: drive_gain,
     described: &[],
     implausible: |values| {
         let wild = values.first().is_some_and(|part| part.abs() > 0.8);
         wild.then_some("the drive's gain would be wrong by more than 80 %")
     },
 };
+
+/// Of one joint, or of all alike where none is given.
+fn drive_gain(along: &Along<'_>, joints: &[usize], _: &[f64]) -> Vec<TorqueColumn> {
+    let torque = |joint: usize| along.signals.tau_model[joint].clone();
+    match joints {
+        [] => vec![TorqueColumn {
+            name: "DG".into(),
+            unit: "1",
+            torque: (0..along.effects.joints())
+                .map(|joint| (joint, torque(joint)))
+                .collect(),
+        }],
+        _ => joints
+            .iter()
+            .map(|&joint| along.column("DG", "1", joint, torque(joint)))
+            .collect(),
+    }
+}
 
 pub(super) static DRIVE_SATURATION: Effect = Effect {
     entry: Entry {

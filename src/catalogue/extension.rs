@@ -8,6 +8,7 @@ use idim_codegen::describe::EffectSpec;
 use idim_runtime::diagnose::Hypothesis;
 use idim_runtime::report::{Diagnosis, FoundEffect};
 
+use super::changes::FRICTION_CHANGE;
 use super::{CATALOGUE, Effects};
 
 /// The effect that is a part of the last link.
@@ -37,6 +38,10 @@ impl Effects {
         let mut elsewhere = Vec::new();
         let mut standard = self.standard(diagnosis);
         for (place, effect) in diagnosis.effects.iter().enumerate() {
+            if effect.effect == FRICTION_CHANGE {
+                self.add(effect, &mut standard);
+                continue;
+            }
             let entries = self
                 .found(effect)
                 .and_then(|(hypothesis, shape)| self.written(&hypothesis, &shape));
@@ -51,10 +56,7 @@ impl Effects {
                     specs.push(new);
                 }
             }
-            for parameter in &effect.parameters {
-                let name = self.standard_name(&effect.effect, &parameter.name);
-                *standard.entry(name).or_default() += parameter.value;
-            }
+            self.add(effect, &mut standard);
         }
         let robot = self.extended(&specs)?;
         let value = |(factor, name): &(f64, String)| factor * standard.get(name).unwrap_or(&0.0);
@@ -68,11 +70,20 @@ impl Effects {
         })
     }
 
+    /// Adds the parameters of an effect to the standard ones.
+    fn add(&self, effect: &FoundEffect, standard: &mut BTreeMap<String, f64>) {
+        for parameter in &effect.parameters {
+            let name = self.standard_name(&effect.effect, &parameter.name);
+            *standard.entry(name).or_default() += parameter.value;
+        }
+    }
+
     /// The standard parameter that a parameter of an effect is: a body at the tool is part of the
     /// last link, all others have their own names.
     fn standard_name(&self, effect: &str, parameter: &str) -> String {
-        match parameter.strip_prefix('P') {
-            Some(own) if effect == PAYLOAD => format!("{own}{}", self.joints()),
+        match (effect, parameter.strip_prefix(['P', 'D'])) {
+            (PAYLOAD, Some(own)) => format!("{own}{}", self.joints()),
+            (FRICTION_CHANGE, Some(own)) => own.to_owned(),
             _ => parameter.to_owned(),
         }
     }

@@ -8,6 +8,7 @@
 
 mod along;
 mod bodies;
+mod changes;
 mod described;
 mod drive;
 mod evaluate;
@@ -32,6 +33,7 @@ use idim_codegen::mechanism::JointKind;
 use idim_codegen::robot::Output;
 use idim_runtime::diagnose::{Catalogue, ColumnsAlong, Entry, Hypothesis, Signals, TorqueColumn};
 
+pub use changes::Changes;
 pub use described::toml;
 pub use extension::Extension;
 pub use guide::guide;

@@ -2,12 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
-use idim::catalogue::{Effects, Extension, entries};
-use idim::runtime::diagnose::{Log, Options, Prediction, diagnose};
+use idim::catalogue::{Changes, Effects, Extension, entries};
+use idim::codegen::Robot;
+use idim::runtime::diagnose::{Log, Nominal, Options, Prediction, changes, diagnose};
 use idim::runtime::identify::{Options as Identification, settle_units};
 use idim::runtime::log::{self, LogSpec, ReadOptions};
 use idim::runtime::model::IdentificationModel;
 use idim::runtime::report::{Diagnosis, diagnosed, diagnosis_html};
+use idim::runtime::simulate::SimulateError;
 use idim::simulated::{self, Motions};
 
 pub(super) mod write;
@@ -15,6 +17,7 @@ pub(super) mod write;
 use super::predictions::Predictions;
 use super::progress::Spinner;
 use super::robot::Texts;
+use super::simulate::parameters;
 use super::{Failure, fits, output, robot};
 
 /// Arguments of `idim diagnose`.
@@ -29,6 +32,13 @@ pub struct Arguments {
     /// A log of another motion, to confirm and prove; may be given several times.
     #[arg(long, value_name = "LOG")]
     validate: Vec<String>,
+    /// The parameters are known and stay as they are: ask what has changed. The JSON of `idim
+    /// identify --json`, or a TOML with a [parameters] table.
+    #[arg(long, value_name = "FILE")]
+    nominal: Option<PathBuf>,
+    /// Mass of the load that is at the tool, kg: sets the scale of the torques.
+    #[arg(long, value_name = "KG", requires = "nominal", value_parser = mass)]
+    load_mass: Option<f64>,
     /// Write the robot description with the effects found and the refitted parameters.
     #[arg(long, value_name = "FILE")]
     write: Option<PathBuf>,
@@ -59,6 +69,12 @@ pub struct Arguments {
     list: bool,
 }
 
+fn mass(text: &str) -> Result<f64, String> {
+    let mass = text.parse::<f64>().ok();
+    mass.filter(|mass| mass.is_finite() && *mass > 0.0)
+        .ok_or_else(|| "a mass in kg, larger than zero".to_owned())
+}
+
 /// Diagnoses, reports.
 ///
 /// # Errors
@@ -79,13 +95,29 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         draw: arguments.html.is_some(),
     };
     let catalogue = Effects::new(&robot);
-    let (mut diagnosis, predictions) = diagnose(
-        model.as_ref(),
-        &catalogue,
-        (&train, &validate),
-        &options,
-        &spinner,
-    )?;
+    let known = arguments.nominal.as_deref();
+    let known =
+        known.map(|path| known_values(path, model.as_ref(), &robot).map(|values| (path, values)));
+    let logs = (train.as_slice(), validate.as_slice());
+    let (mut diagnosis, predictions) = match known.transpose()? {
+        Some((path, values)) => {
+            let nominal = Nominal {
+                source: &path.display().to_string(),
+                values: &values,
+                load_mass: arguments.load_mass,
+            };
+            let catalogue = Changes::new(&catalogue);
+            changes(
+                model.as_ref(),
+                &catalogue,
+                &nominal,
+                logs,
+                &options,
+                &spinner,
+            )?
+        }
+        None => diagnose(model.as_ref(), &catalogue, logs, &options, &spinner)?,
+    };
     diagnosis.command = Some(output::command_line());
     let extension = catalogue
         .extension(&diagnosis)
@@ -123,6 +155,37 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         return Ok(());
     }
     output::print(&text)
+}
+
+/// The values of `--nominal`, all of them.
+fn known_values(
+    path: &Path,
+    model: &dyn IdentificationModel,
+    robot: &Robot,
+) -> Result<Vec<f64>, Failure> {
+    let missing = match parameters::read(path, model, robot) {
+        Err(Failure::Simulate(SimulateError::Missing { names, .. })) => names,
+        other => return other,
+    };
+    let (name, all) = (model.name(), model.columns().len());
+    // What most of is missing was made for something else.
+    let message = match 2 * missing.len() > all {
+        true => format!(
+            "these are not the parameters of {name}: {} of its {all} have no value; give what \
+             `idim identify {name} LOG --json FILE` writes",
+            missing.len()
+        ),
+        false => format!(
+            "no value for {} of {name}, and --nominal keeps every parameter as it is: add {} to \
+             [parameters], or identify them",
+            missing.join(", "),
+            if missing.len() == 1 { "it" } else { "them" }
+        ),
+    };
+    Err(Failure::Parameters {
+        path: path.to_owned(),
+        message,
+    })
 }
 
 /// The catalogue as text.

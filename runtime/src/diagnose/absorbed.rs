@@ -7,6 +7,9 @@ use super::stepwise::Refused;
 /// Hypotheses of which the null model (with what is known of its parameters) leaves nothing along
 /// the training logs: with them or without, the same torque is predicted.
 pub(super) fn absorbed(bench: &Bench<'_>, before: &State) -> Vec<Refused> {
+    if bench.knows_parameters() {
+        return Vec::new();
+    }
     let entry = |hypothesis: &Hypothesis| &bench.catalogue.entries()[hypothesis.entry];
     let numbered = bench.hypotheses.iter().enumerate();
     let hidden: Vec<usize> = numbered

@@ -2,6 +2,7 @@
 
 use super::joined::Joined;
 use super::linear::add_scaled;
+use super::nominal;
 use super::screen::Contender;
 use super::state::State;
 use super::stepwise::{Named, Stepwise};
@@ -16,6 +17,9 @@ const DOUBT: f64 = 3.0;
 /// By how much an effect may raise the plain torque error on another motion, as a factor: what
 /// only noise decides.
 const WORSE: f64 = 1.005;
+
+/// Standard deviations that some parameter of a change must be from zero.
+const CLEAR: f64 = 3.0;
 
 /// What an effect did on another motion instead of what it promised.
 #[derive(Clone, Copy, Debug)]
@@ -41,6 +45,14 @@ impl Broken {
     }
 }
 
+/// Sum of the squared torque errors of a joint over the rows that count.
+pub(super) fn error(joined: &Joined, joint: usize, predicted: &[Vec<f64>]) -> f64 {
+    let measured = joined.measured(joint);
+    let pairs = measured.iter().zip(&predicted[joint]);
+    let weighted = joined.weights[joint].iter().zip(pairs);
+    weighted.map(|(w, (y, p))| w * (y - p).powi(2)).sum()
+}
+
 /// Whether a change of the predicted rows does on another motion what it should: `change` is its
 /// product with the residual before, and its square.
 fn kept(
@@ -54,12 +66,7 @@ fn kept(
         return Err(Broken::Promise { gained, promised });
     }
     let error = |rows: &[Vec<f64>]| -> f64 {
-        let of_joint = |&joint: &usize| -> f64 {
-            let measured = confirm.measured(joint);
-            let pairs = measured.iter().zip(&rows[joint]);
-            let weighted = confirm.weights[joint].iter().zip(pairs);
-            weighted.map(|(w, (y, p))| w * (y - p).powi(2)).sum()
-        };
+        let of_joint = |&joint: &usize| self::error(confirm, joint, rows);
         joints.iter().map(of_joint).sum::<f64>().sqrt()
     };
     match error(after) / error(before) {
@@ -89,6 +96,7 @@ impl Stepwise<'_> {
                 "along the measured motion nothing but noise is left of its columns".to_owned(),
             );
         }
+        self.matters(contender, state, &next)?;
         let Some((confirm, beside)) = self.confirm else {
             return Ok(next);
         };
@@ -114,5 +122,35 @@ impl Stepwise<'_> {
             })
             .map(|()| next)
             .map_err(|broken| broken.why(contender.gain.square))
+    }
+
+    /// Whether an effect takes enough of the torque error of one of its joints away.
+    fn matters(&self, contender: &Contender, state: &State, next: &State) -> Result<(), String> {
+        let least = self.bench.least_gain;
+        if !self.bench.knows_parameters() {
+            return Ok(());
+        }
+        let train = self.bench.train;
+        let [before, after] = [state, next].map(|state| self.bench.rows(state, train));
+        let joints = contender.candidate.columns.iter().flat_map(|c| c.0.iter());
+        let gain = |&(joint, _): &(usize, Vec<f64>)| {
+            let errors = [&before, &after].map(|rows| error(train, joint, rows));
+            1.0 - (errors[1] / errors[0]).sqrt()
+        };
+        let gain = joints.map(gain).fold(f64::NEG_INFINITY, f64::max);
+        let mut wide = next.clone();
+        nominal::widen(&mut wide, train);
+        let clear = wide.effects.last().is_some_and(|effect| {
+            let mut pairs = effect.values.iter().zip(&effect.sigmas);
+            pairs.any(|(value, sigma)| sigma.is_some_and(|sigma| value.abs() > CLEAR * sigma))
+        });
+        match (gain >= least, clear) {
+            (true, true) => Ok(()),
+            (true, false) => Err("none of its parameters is far from zero".to_owned()),
+            (false, _) => Err(format!(
+                "it lowers the torque error of none of its joints by more than {:.1} %",
+                100.0 * gain.max(0.0)
+            )),
+        }
     }
 }

@@ -47,8 +47,8 @@ enum Doubt {
     },
 }
 
-/// Everything that is to be said about logs.
-pub(super) fn warnings((train, validate): (&[Log], &[Log])) -> Vec<String> {
+/// Everything that is to be said about logs; `kept` if a part of those to fit on confirms and proves.
+pub(super) fn warnings((train, validate): (&[Log], &[Log]), kept: bool) -> Vec<String> {
     let logs = train.iter().chain(validate);
     let mut all: Vec<String> = logs
         .flat_map(|log| log.recording.warnings.clone())
@@ -57,7 +57,7 @@ pub(super) fn warnings((train, validate): (&[Log], &[Log])) -> Vec<String> {
         .iter()
         .flat_map(|log| train.iter().filter_map(|other| known(log, other)))
         .collect();
-    if validate.is_empty() {
+    if validate.is_empty() && !kept {
         doubts.push(Doubt::Missing);
     }
     all.extend(doubts.iter().map(Doubt::to_string));

@@ -58,10 +58,15 @@ impl Joined {
         part
     }
 
-    /// Some of the logs, by their places.
+    /// Some of the logs, by their places, each row counting what it does.
     pub fn only(&self, places: &[usize]) -> Joined {
         let tracks = places.iter().filter_map(|&place| self.tracks.get(place));
-        Joined::new(tracks.cloned().collect())
+        let mut only = Joined::new(tracks.cloned().collect());
+        for (own, all) in only.weights.iter_mut().zip(&self.weights) {
+            let rows = places.iter().filter_map(|&place| self.segments.get(place));
+            *own = rows.flat_map(|rows| all[rows.clone()].to_vec()).collect();
+        }
+        only
     }
 
     /// Rows of each joint.

@@ -11,6 +11,7 @@ mod absorbed;
 mod catalogue;
 mod closed_loop;
 mod confirm;
+mod contact;
 mod doubts;
 mod generic;
 mod instruments;
@@ -18,6 +19,7 @@ mod joined;
 mod likelihood;
 mod linear;
 mod noise;
+mod nominal;
 mod null;
 mod options;
 mod picture;
@@ -34,14 +36,17 @@ mod track;
 mod verdict;
 
 pub use catalogue::{Catalogue, ColumnsAlong, Entry, EntryKind, Hypothesis, Signals, TorqueColumn};
+pub use nominal::{Nominal, changes};
 pub use options::{DiagnoseError, Log, Options};
 
 use crate::identify::{self, Progress};
+use crate::log::Recording;
 use crate::model::IdentificationModel;
 use crate::observe::Filtering;
 use crate::report::Diagnosis;
 use crate::settings::Derivatives;
 use joined::Joined;
+use noise::Noise;
 use null::{Null, Prior};
 use state::{Bench, Predictions, State};
 use stepwise::Stepwise;
@@ -82,30 +87,96 @@ pub fn diagnose(
     options: &Options,
     progress: &dyn Progress,
 ) -> Result<(Diagnosis, Vec<Prediction>), DiagnoseError> {
-    let filtering = filtering(model, train, validate, options)?;
-    let tracks = |logs: &[Log]| -> Result<Vec<Track>, DiagnoseError> {
-        let track = |log: &Log| {
-            progress.step(&format!("filtering {}", log.recording.name));
-            Ok(Track::new(
-                model,
-                &log.recording,
-                &log.companion,
-                &filtering,
-            )?)
+    let filtering = filtering(model, (train, validate), options)?;
+    let read = Tracked::new(model, (train, validate), (filtering, options), progress)?;
+    check_length(model, &read.train)?;
+    let searched = searched(model, catalogue, &read, None, progress)?;
+    Ok((searched.diagnosis, searched.predictions))
+}
+
+/// Logs as rows.
+struct Tracked<'a> {
+    /// To fit on, and of other motions.
+    logs: (&'a [Log], &'a [Log]),
+    train: Joined,
+    other: Joined,
+    /// Whether the other motion is the second half of the logs to fit on.
+    kept: bool,
+    filtering: Filtering,
+    /// Whether curves are wanted.
+    draw: bool,
+}
+
+impl<'a> Tracked<'a> {
+    fn new(
+        model: &dyn IdentificationModel,
+        (train, validate): (&'a [Log], &'a [Log]),
+        (filtering, options): (Filtering, &Options),
+        progress: &dyn Progress,
+    ) -> Result<Self, DiagnoseError> {
+        let tracks = |logs: &[Log]| -> Result<Joined, DiagnoseError> {
+            let track = |log: &Log| {
+                progress.step(&format!("filtering {}", log.recording.name));
+                Ok(Track::new(
+                    model,
+                    &log.recording,
+                    &log.companion,
+                    &filtering,
+                )?)
+            };
+            let tracks: Result<Vec<Track>, DiagnoseError> = logs.iter().map(track).collect();
+            Ok(Joined::new(tracks?))
         };
-        logs.iter().map(track).collect()
-    };
-    let joined = Joined::new(tracks(train)?);
-    check_length(model, &joined)?;
-    let other = Joined::new(tracks(validate)?);
-    let fresh = doubts::fresh((train, validate));
-    let (confirm, proof) = split(&other.only(&fresh));
+        Ok(Tracked {
+            train: tracks(train)?,
+            other: tracks(validate)?,
+            logs: (train, validate),
+            kept: false,
+            filtering,
+            draw: options.draw,
+        })
+    }
+
+    /// What confirms and what proves, of rows of the other motions.
+    fn parts(&self, other: &Joined) -> (Option<Joined>, Option<Joined>) {
+        match self.kept {
+            true => (Some(other.part(0.5..0.75)), Some(other.part(0.75..1.0))),
+            false => split(&other.only(&doubts::fresh(self.logs))),
+        }
+    }
+}
+
+/// What a search comes to.
+struct Searched {
+    diagnosis: Diagnosis,
+    predictions: Vec<Prediction>,
+    /// Torque predicted along the rows to fit on, and along those of other motions, by joint.
+    rows: (Vec<Vec<f64>>, Vec<Vec<f64>>),
+    noise: Vec<Noise>,
+}
+
+/// Fits the null model, or takes the known one as it is, and searches what it lacks.
+fn searched(
+    model: &dyn IdentificationModel,
+    catalogue: &dyn Catalogue,
+    read: &Tracked<'_>,
+    known: Option<&Nominal<'_>>,
+    progress: &dyn Progress,
+) -> Result<Searched, DiagnoseError> {
+    let (joined, other) = (&read.train, &read.other);
+    let (confirm, proof) = read.parts(other);
     progress.step("simulating the motion without noise");
-    let prior = Prior::of(model, model.knowledge());
-    let guess = null::first_guess(model, &joined, &prior);
-    let instruments = instruments::beside(model, &joined, &guess);
+    let prior = match known {
+        Some(known) => known.prior(),
+        None => Prior::of(model, model.knowledge()),
+    };
+    let guess = null::first_guess(model, joined, &prior);
+    let instruments = instruments::beside(model, joined, &guess);
     progress.step("fitting the null model and its noise");
-    let null = null::null(model, (&joined, &instruments), &prior);
+    let null = match known {
+        Some(known) => known.null(model, (joined, &instruments)),
+        None => null::null(model, (joined, &instruments), &prior),
+    };
     let Null { noise, system, .. } = &null;
     let parameters = null::parameters(model, system);
     let predicted = Predictions {
@@ -121,10 +192,11 @@ pub fn diagnose(
         model,
         catalogue,
         hypotheses: &hypotheses,
-        train: &joined,
+        train: joined,
         instruments: &instruments,
         noise,
         null: system,
+        least_gain: known.map_or(f64::NEG_INFINITY, |_| nominal::LEAST_GAIN),
     };
     let before = State {
         system: system.clone(),
@@ -132,13 +204,18 @@ pub fn diagnose(
         effects: Vec::new(),
         predicted,
     };
-    doubts::check(&bench, &before, &other)?;
+    if known.is_none() {
+        doubts::check(&bench, &before, other)?;
+    }
     progress.step(&format!("screening {} hypotheses", hypotheses.len()));
-    let beside = instruments::beside(model, &other, &before.parameters);
-    let confirm = confirm.zip(split(&beside.only(&fresh)).0);
+    let beside = instruments::beside(model, other, &before.parameters);
+    let confirm = confirm.zip(read.parts(&beside).0);
     let confirm = confirm.as_ref().map(|(own, beside)| (own, beside));
     let search = Stepwise::new(bench, confirm, &before);
-    let outcome = search.run(before.clone());
+    let mut outcome = search.run(before.clone());
+    if known.is_some() {
+        nominal::widen(&mut outcome.state, joined);
+    }
     progress.step("proving what was found");
     let predictions = other
         .tracks
@@ -149,21 +226,34 @@ pub fn diagnose(
         })
         .collect();
     let asked = Asked {
-        logs: (train, validate),
-        filtering: &filtering,
-        draw: options.draw,
+        logs: read.logs,
+        kept: read.kept,
+        filtering: &read.filtering,
+        draw: read.draw,
     };
     let diagnosis = summary::diagnosis(&bench, &null, (&before, &outcome), proof.as_ref(), &asked);
-    Ok((diagnosis, predictions))
+    let along = |joined: &Joined| bench.rows(&outcome.state, joined);
+    Ok(Searched {
+        rows: (along(joined), along(other)),
+        noise: null.noise.clone(),
+        diagnosis,
+        predictions,
+    })
 }
 
 /// The filters, as the user or the robot says, and otherwise fast.
 fn filtering(
     model: &dyn IdentificationModel,
-    train: &[Log],
-    validate: &[Log],
+    logs: (&[Log], &[Log]),
     options: &Options,
 ) -> Result<Filtering, DiagnoseError> {
+    let first = first(logs)?;
+    let asked = asked(model, first, options);
+    Ok(asked.resolve(model, std::slice::from_ref(first))?.filtering)
+}
+
+/// The first log; all others must have its rate.
+fn first<'a>((train, validate): (&'a [Log], &[Log])) -> Result<&'a Recording, DiagnoseError> {
     let Some(Log {
         recording: first, ..
     }) = train.first()
@@ -174,14 +264,23 @@ fn filtering(
         .iter()
         .chain(validate)
         .find(|log| (log.recording.rate_hz / first.rate_hz - 1.0).abs() > 1e-3);
-    if let Some(Log { recording, .. }) = other {
-        return Err(DiagnoseError::Rates {
+    match other {
+        Some(Log { recording, .. }) => Err(DiagnoseError::Rates {
             log: recording.name.clone(),
             rate_hz: recording.rate_hz,
             first: first.name.clone(),
             first_hz: first.rate_hz,
-        });
+        }),
+        None => Ok(first),
     }
+}
+
+/// What is asked of the filters.
+fn asked(
+    model: &dyn IdentificationModel,
+    first: &Recording,
+    options: &Options,
+) -> identify::Options {
     let set = model.settings();
     let fq_hz = options
         .fq_hz
@@ -190,14 +289,13 @@ fn filtering(
     let nd = options
         .nd
         .unwrap_or((first.rate_hz / ROWS_HZ).round().max(1.0) as usize);
-    let asked = identify::Options {
+    identify::Options {
         fq_hz: Some(fq_hz),
         nd: Some(nd),
         // Velocities near rest are treated here, and otherwise.
         derivatives: Some(Derivatives::Central),
         ..identify::Options::default()
-    };
-    Ok(asked.resolve(model, std::slice::from_ref(first))?.filtering)
+    }
 }
 
 fn check_length(model: &dyn IdentificationModel, joined: &Joined) -> Result<(), DiagnoseError> {
@@ -226,8 +324,8 @@ fn split(validate: &Joined) -> (Option<Joined>, Option<Joined>) {
         0 => (None, None),
         1 => (Some(validate.part(0.0..0.5)), Some(validate.part(0.5..1.0))),
         count => (
-            Some(Joined::new(validate.tracks[..count - 1].to_vec())),
-            Some(Joined::new(validate.tracks[count - 1..].to_vec())),
+            Some(validate.only(&(0..count - 1).collect::<Vec<_>>())),
+            Some(validate.only(&[count - 1])),
         ),
     }
 }

@@ -73,7 +73,7 @@ pub(super) fn parameters(model: &dyn IdentificationModel, system: &System) -> Ve
 }
 
 /// Noise before anything is known of it: a part of the torque.
-fn unknown_noise(joined: &Joined) -> Vec<Noise> {
+pub(super) fn unknown_noise(joined: &Joined) -> Vec<Noise> {
     let of_joint = |joint: usize| {
         let y = joined.measured(joint);
         Noise::white(0.05 * (dot(&y, &y) / y.len().max(1) as f64).sqrt())
@@ -140,7 +140,7 @@ pub(super) fn null(
 }
 
 /// Weighted fit of the base parameters, with the rows of the prior.
-fn fit(
+pub(super) fn fit(
     model: &dyn IdentificationModel,
     (joined, instruments): (&Joined, &Joined),
     noise: &[Noise],

@@ -81,6 +81,19 @@ pub enum DiagnoseError {
         /// That of the training logs.
         train_pct: f64,
     },
+    /// Too few rows for anything, with all parameters known.
+    #[error(
+        "the logs have {rows} rows a joint (at {step_ms} ms); at least {needs} are needed to see \
+         whether anything has changed: use a longer log"
+    )]
+    Short {
+        /// Rows there are.
+        rows: usize,
+        /// Milliseconds between two of them.
+        step_ms: f64,
+        /// Rows needed.
+        needs: usize,
+    },
     /// Too few rows for the parameters and the noise.
     #[error(
         "the training logs have {rows} rows a joint (at {step_ms} ms); at least {needs} are needed \

@@ -44,6 +44,8 @@ pub(super) struct Bench<'a> {
     pub noise: &'a [Noise],
     /// The null model alone.
     pub null: &'a System,
+    /// Share of the torque error of some joint that an effect must take away.
+    pub least_gain: f64,
 }
 
 /// The model with some effects.
@@ -71,6 +73,11 @@ impl<'a> Bench<'a> {
     {
         self.instruments
             .along(self.catalogue, &predicted.instruments)
+    }
+
+    /// Whether the parameters of the model are known and stay as they are.
+    pub fn knows_parameters(&self) -> bool {
+        self.least_gain > f64::NEG_INFINITY
     }
 
     pub fn kind(&self, number: usize) -> EntryKind {

@@ -20,6 +20,8 @@ use crate::report::{
 pub(super) struct Asked<'a> {
     /// To fit on, and of other motions.
     pub logs: (&'a [Log], &'a [Log]),
+    /// Whether a part of the logs to fit on was kept, to confirm and prove.
+    pub kept: bool,
     pub filtering: &'a Filtering,
     /// Whether curves are wanted.
     pub draw: bool,
@@ -81,7 +83,8 @@ pub(super) fn diagnosis(
             on: place(on, proof.is_some(), doubts::fresh(asked.logs).len()),
         },
         parameters: refitted(bench, before, &outcome.state),
-        warnings: doubts::warnings(asked.logs),
+        changed: None,
+        warnings: doubts::warnings(asked.logs, asked.kept),
         command: None,
         pictures: asked
             .draw
@@ -123,6 +126,7 @@ fn place(on: &Joined, proven: bool, validation: usize) -> String {
     let names = names.join(" + ");
     match (proven, validation) {
         (false, _) => format!("{names} (the training log itself: nothing is proven)"),
+        (true, 0) => format!("last quarter of {names}, kept for this"),
         (true, 1) => format!("second half of {names}"),
         (true, _) => names,
     }

@@ -1,5 +1,6 @@
 //! Weighted least squares with instruments, that grows by columns.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use faer::Mat;
@@ -170,6 +171,33 @@ impl System {
         let sigma = |k: usize| {
             let squares = (0..self.basis.len()).map(|i| self.inverse[(k, i)].powi(2));
             squares.sum::<f64>().sqrt()
+        };
+        let first = self.places.len() - count;
+        self.places[first..]
+            .iter()
+            .map(|place| place.map(sigma))
+            .collect()
+    }
+
+    /// The same for residuals of any colour and size, from their sums over blocks of rows (Liang and
+    /// Zeger 1986): the errors of different blocks are independent, those inside one need not be.
+    pub fn block_sigmas(&self, count: usize, blocks: &[Range<usize>]) -> Vec<Option<f64>> {
+        let joints = self.y.len() / self.rows.max(1);
+        let of_block = |q: &Arc<Vec<f64>>, block: &Range<usize>| -> f64 {
+            let rows = (0..joints).map(|j| j * self.rows + block.start..j * self.rows + block.end);
+            rows.map(|rows| dot(&q[rows.clone()], &self.residual[rows]))
+                .sum()
+        };
+        let scores: Vec<Vec<f64>> = blocks
+            .iter()
+            .map(|block| self.basis.iter().map(|q| of_block(q, block)).collect())
+            .collect();
+        let sigma = |k: usize| {
+            let change = |scores: &Vec<f64>| -> f64 {
+                let terms = scores.iter().enumerate();
+                terms.map(|(i, score)| self.inverse[(k, i)] * score).sum()
+            };
+            scores.iter().map(|s| change(s).powi(2)).sum::<f64>().sqrt()
         };
         let first = self.places.len() - count;
         self.places[first..]

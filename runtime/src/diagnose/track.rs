@@ -197,6 +197,12 @@ impl Track {
         self.kept.get(row).map_or(0.0, |&sample| self.t[sample])
     }
 
+    /// Whether each row cannot be believed.
+    pub fn doubtful_rows(&self) -> Vec<bool> {
+        let doubtful = |sample: &usize| self.motion.doubtful.iter().any(|r| r.contains(sample));
+        self.kept.iter().map(doubtful).collect()
+    }
+
     /// Signals at the rows.
     pub fn at_rows(&self, series: &[f64]) -> Vec<f64> {
         self.kept.iter().map(|&sample| series[sample]).collect()

@@ -72,6 +72,17 @@ impl Options {
         model: &dyn IdentificationModel,
         train: &[L],
     ) -> Result<Plan, IdentifyError> {
+        let logs: Vec<&dyn Samples> = train.iter().map(|log| log as &dyn Samples).collect();
+        excited::check(&choice::looks(&logs)?)?;
+        self.resolve_at_rest(model, train)
+    }
+
+    /// The same for logs in which nothing needs to move.
+    pub(crate) fn resolve_at_rest<L: Samples>(
+        &self,
+        model: &dyn IdentificationModel,
+        train: &[L],
+    ) -> Result<Plan, IdentifyError> {
         let set = model.settings();
         // Edges of Matlab or SciPy are asked for where their numbers are to be reproduced.
         let derivatives = self.derivatives.unwrap_or(match self.edges.or(set.edges) {
@@ -91,7 +102,6 @@ impl Options {
         for look in &looks {
             check(look, model.joints().len())?;
         }
-        excited::check(&looks)?;
         let (np, given) = (model.columns().len(), (fq_hz, nd, trim));
         let by = (edges, derivatives);
         let chosen = choice::from_logs(&train, &looks, np, by, given)?;

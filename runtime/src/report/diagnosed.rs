@@ -2,13 +2,17 @@
 
 use std::fmt::Write;
 
+use super::changed::glance;
 use super::table::significant;
 use super::{Diagnosis, EffectParameter, FoundEffect, RejectedEffect, Verdict};
 
 /// Renders a diagnosis: the verdict, each effect with its parameters and how sure it is, where the
 /// gap is, how it shrinks, what was rejected. A function of the value alone.
 pub fn diagnosed(diagnosis: &Diagnosis) -> String {
-    let mut text = format!("{}: {}\n", diagnosis.robot, sentence(diagnosis));
+    let mut text = match &diagnosis.changed {
+        Some(changed) => glance(diagnosis, changed),
+        None => format!("{}: {}\n", diagnosis.robot, sentence(diagnosis)),
+    };
     for effect in &diagnosis.effects {
         text.push('\n');
         text.push_str(&named(effect));
@@ -130,6 +134,10 @@ fn located(text: &mut String, diagnosis: &Diagnosis) {
 
 fn gap(text: &mut String, diagnosis: &Diagnosis) {
     let gap = &diagnosis.gap;
+    if gap.torque.before.total_pct == 0.0 && diagnosis.changed.is_some() {
+        // No joint moves enough for its torque to be predicted.
+        return;
+    }
     let _ = writeln!(text, "\ntorque error on {}", gap.on);
     let (before, after) = (&gap.torque.before, &gap.torque.after);
     let total = (
@@ -137,7 +145,10 @@ fn gap(text: &mut String, diagnosis: &Diagnosis) {
         significant(after.total_pct, 3),
     );
     let _ = writeln!(text, "  all joints: {} % -> {} %", total.0, total.1);
-    for (before, after) in before.joints.iter().zip(&after.joints) {
+    let pairs = before.joints.iter().zip(&after.joints);
+    // Joints at rest have no torque that a model predicts.
+    let counted = |before: f64| before > 0.0 || diagnosis.changed.is_none();
+    for (before, after) in pairs.filter(|(before, _)| counted(before.rmse)) {
         let _ = writeln!(
             text,
             "  {}: {} -> {} {}",

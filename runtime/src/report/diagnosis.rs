@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::{Fit, Pictures};
+use super::{Changed, Fit, Pictures};
 use crate::observe::Filtering;
 
 /// What a diagnosis comes to.
@@ -46,6 +46,9 @@ pub struct Diagnosis {
     pub gap: Gap,
     /// The parameters of the model, fitted without and with the effects.
     pub parameters: Vec<Refitted>,
+    /// What else has changed, where the parameters are known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub changed: Option<Changed>,
     /// What is to be said about the logs.
     pub warnings: Vec<String>,
     /// The command line that gives this result, if one did.

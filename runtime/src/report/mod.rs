@@ -3,6 +3,7 @@
 //! [`Identification`] is all that is said about an identification: its JSON is the machine
 //! readable report, and [`terminal()`] and [`html()`] render nothing but this value.
 
+mod changed;
 mod diagnosed;
 mod diagnosis;
 mod gains;
@@ -17,6 +18,7 @@ mod table;
 mod terminal;
 mod thin;
 
+pub use changed::{AtTool, Changed, Contact, FrictionChange, OtherChange, TorqueScale, Touched};
 pub use diagnosed::{diagnosed, parameter, place};
 pub use diagnosis::{
     Alternative, Change, Diagnosis, EffectParameter, Estimated, FoundEffect, Gap, Located,

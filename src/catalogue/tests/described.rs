@@ -106,6 +106,7 @@ fn diagnosis(robot: &idim_codegen::Robot, effect: FoundEffect) -> Diagnosis {
             .enumerate()
             .map(refitted)
             .collect(),
+        changed: None,
         warnings: Vec::new(),
     }
 }

@@ -154,6 +154,7 @@ fn diagnosed() -> Diagnosis {
                 after: estimated(0.601, 0.01),
             },
         ],
+        changed: None,
         warnings: vec![],
         command: Some("idim diagnose arm.toml train.csv --html page.html".into()),
         pictures: Some(pictures()),
