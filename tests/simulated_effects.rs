@@ -22,10 +22,11 @@ use cases::robots::{Described, describe};
 use idim::catalogue::Effects;
 use idim::codegen::Robot;
 use idim::codegen::builder::read_texts;
-use idim::runtime::diagnose::{Catalogue, Hypothesis, Signals};
+use idim::runtime::diagnose::{Catalogue, Hypothesis, Signals, TorqueColumn};
 use idim::runtime::log::Fourier;
 use idim::runtime::observe::dahl;
-use idim::runtime::signal::central_difference;
+use idim::runtime::settings::Edges;
+use idim::runtime::signal::{ZeroPhase, butterworth, central_difference};
 use idim::runtime::simulate::{
     Grid, Method, Options, State, Trajectory, free_motion, inverse_dynamics,
 };
@@ -194,16 +195,14 @@ fn static_effects_add_their_column_times_their_parameter() {
     }
 }
 
-/// What the catalogue says that an effect adds along a motion.
-fn column_times_parameter(
+/// The columns of the catalogue for an effect along a motion: on each joint, per unit of their
+/// parameters.
+fn columns(
     catalogue: &Effects,
     bench: &Bench,
-    effect: &Effect,
+    (name, joints, shape): (&str, &[usize], &[f64]),
     motion: &Trajectory,
-) -> Vec<Vec<f64>> {
-    let Hidden::Columns(columns) = &effect.hidden else {
-        panic!("{} is no column", effect.name);
-    };
+) -> Vec<Vec<Vec<f64>>> {
     let len = motion.q[0].len();
     let t: Vec<f64> = (0..len).map(|k| k as f64 / RATE_HZ).collect();
     let zero = vec![vec![0.0; len]; motion.q.len()];
@@ -221,24 +220,46 @@ fn column_times_parameter(
     let entry = catalogue
         .entries()
         .iter()
-        .position(|entry| entry.name == effect.name);
+        .position(|entry| entry.name == name);
     let hypothesis = Hypothesis {
         entry: entry.unwrap(),
-        joints: columns[0].joints.clone(),
+        joints: joints.to_vec(),
         grid: vec![],
         bounds: vec![],
         least: 0.0,
     };
-    let values = columns
+    let on_joints = |column: TorqueColumn| {
+        let mut all = zero.clone();
+        column
+            .torque
+            .into_iter()
+            .for_each(|(joint, torque)| all[joint] = torque);
+        all
+    };
+    let made = catalogue.columns(&hypothesis, shape, &signals);
+    made.into_iter().map(on_joints).collect()
+}
+
+/// What the catalogue says that an effect adds along a motion.
+fn column_times_parameter(
+    catalogue: &Effects,
+    bench: &Bench,
+    effect: &Effect,
+    motion: &Trajectory,
+) -> Vec<Vec<f64>> {
+    let Hidden::Columns(hidden) = &effect.hidden else {
+        panic!("{} is no column", effect.name);
+    };
+    let values = hidden
         .iter()
         .flat_map(|column| &column.values)
-        .map(|(_, value)| value);
-    let mut torque = zero.clone();
-    let all = catalogue.columns(&hypothesis, &columns[0].shape, &signals);
+        .map(|(_, value)| *value);
+    let what = (effect.name, &*hidden[0].joints, &*hidden[0].shape);
+    let all = columns(catalogue, bench, what, motion);
+    let mut torque = vec![vec![0.0; motion.q[0].len()]; motion.q.len()];
     for (column, value) in all.iter().zip(values) {
-        for (joint, series) in &column.torque {
-            let sums = torque[*joint].iter_mut().zip(series);
-            sums.for_each(|(sum, unit)| *sum += value * unit);
+        for (sum, unit) in torque.iter_mut().flatten().zip(column.iter().flatten()) {
+            *sum += value * unit;
         }
     }
     torque
@@ -383,4 +404,54 @@ fn gear_with_play_rests_on_either_side_of_its_gap() {
         count > 500 && leaning * 100 > count * 95,
         "{leaning} of {count}"
     );
+}
+
+/// What a gear costs beyond the rigid model, against its column; both as the diagnosis sees them,
+/// without what is faster than 20 Hz: what is left of it, and what there is, root of sums of squares.
+fn cost_of_gear(kind: usize, effect: Effect, shape: &[f64], parameter: f64) -> [f64; 2] {
+    let bench = bench(kind);
+    let catalogue = Effects::new(&bench.robot);
+    let (machine, log) = bench.run(std::slice::from_ref(&effect));
+    let motion = bench.motion_of(&machine, &log);
+    let known = inverse_dynamics(&bench.bare.model, &bench.bare.values, &motion).unwrap();
+    let what = (effect.name, &*effect.joints, shape);
+    let column = columns(&catalogue, &bench, what, &motion).remove(0);
+    let cascade = butterworth(4, 20.0, RATE_HZ).unwrap();
+    let low_pass = ZeroPhase::new(cascade, 4, Edges::Scipy);
+    // Neither where dry friction turns nor where the start still rings.
+    let at = moving(&motion);
+    let [mut left, mut there] = [0.0, 0.0];
+    for joint in 0..column.len() {
+        let mean = |k: usize| 0.5 * (log.tau[joint][k.saturating_sub(1)] + log.tau[joint][k]);
+        let beyond: Vec<f64> = (0..known[joint].len())
+            .map(|k| mean(k) - known[joint][k])
+            .collect();
+        let modelled: Vec<f64> = column[joint].iter().map(|unit| parameter * unit).collect();
+        let smooth = low_pass.filter(&[beyond, modelled]).unwrap();
+        for &k in at.iter().filter(|&&k| k > 600) {
+            left += (smooth[0][k] - smooth[1][k]).powi(2);
+            there += smooth[0][k].powi(2);
+        }
+    }
+    [left.sqrt(), there.sqrt()]
+}
+
+#[test]
+fn gear_that_yields_costs_its_column_over_its_stiffness() {
+    let (stiffness, damping) = (900.0, 3.0);
+    let carried = bench(0).host.carried[1];
+    let w = (stiffness / carried).sqrt();
+    let effect = Effect {
+        name: "joint_elasticity",
+        joints: vec![1],
+        hidden: Hidden::Elastic {
+            joint: 1,
+            stiffness,
+            damping,
+        },
+    };
+    let shape = [w / TAU, 0.5 * damping / (w * carried)];
+    let [left, there] = cost_of_gear(0, effect, &shape, 1.0 / stiffness);
+    // To first order in what it yields, and but for the turns of friction beside it.
+    assert!(left < 0.15 * there, "{left} of {there}");
 }

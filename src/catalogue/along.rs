@@ -30,9 +30,9 @@ pub(super) struct Along<'a> {
 /// How the model's torque changes with the motion of one joint: on every joint, per rad (m) of
 /// position, velocity, acceleration.
 pub(super) struct Sensitivity {
-    position: Vec<Vec<f64>>,
-    velocity: Vec<Vec<f64>>,
-    acceleration: Vec<Vec<f64>>,
+    pub position: Vec<Vec<f64>>,
+    pub velocity: Vec<Vec<f64>>,
+    pub acceleration: Vec<Vec<f64>>,
 }
 
 /// A small displacement of a joint along the signals with its time derivatives.
@@ -40,6 +40,35 @@ pub(super) struct Displacement {
     pub position: Vec<f64>,
     pub velocity: Vec<f64>,
     pub acceleration: Vec<f64>,
+}
+
+impl Displacement {
+    pub fn with_capacity(len: usize) -> Displacement {
+        let none = || Vec::with_capacity(len);
+        Displacement {
+            position: none(),
+            velocity: none(),
+            acceleration: none(),
+        }
+    }
+
+    /// One more sample.
+    pub fn push(&mut self, position: f64, velocity: f64, acceleration: f64) {
+        self.position.push(position);
+        self.velocity.push(velocity);
+        self.acceleration.push(acceleration);
+    }
+
+    /// So many times as large.
+    pub fn times(mut self, factor: f64) -> Displacement {
+        let all = [
+            &mut self.position,
+            &mut self.velocity,
+            &mut self.acceleration,
+        ];
+        all.into_iter().flatten().for_each(|x| *x *= factor);
+        self
+    }
 }
 
 impl<'a> Along<'a> {
@@ -157,16 +186,6 @@ impl<'a> Along<'a> {
         self.signals.qd[joint].iter().map(sign).collect()
     }
 
-    /// A displacement by its positions.
-    pub fn displacement(&self, position: Vec<f64>) -> Displacement {
-        let velocity = self.rate(&position);
-        Displacement {
-            acceleration: self.rate(&velocity),
-            position,
-            velocity,
-        }
-    }
-
     /// Derivative of a series in time.
     pub fn rate(&self, series: &[f64]) -> Vec<f64> {
         central_difference(series, self.signals.rate_hz)
@@ -196,11 +215,15 @@ impl<'a> Along<'a> {
 
     /// The same when only the link is, its drive where it was measured.
     pub fn link_displaced(&self, joint: usize, by: &Displacement) -> Vec<(usize, Vec<f64>)> {
-        let of_links = || {
+        self.moved(self.link_sensitivity(joint), by)
+    }
+
+    /// How the torque of the links changes with the motion of one of them.
+    pub fn link_sensitivity(&self, joint: usize) -> &Sensitivity {
+        self.link_sensitivities[joint].get_or_init(|| {
             let values: Vec<f64> = self.standard().iter().flatten().copied().collect();
             self.sensitivity(self.effects.links(), &values, joint)
-        };
-        self.moved(self.link_sensitivities[joint].get_or_init(of_links), by)
+        })
     }
 
     fn moved(&self, sensitivity: &Sensitivity, by: &Displacement) -> Vec<(usize, Vec<f64>)> {

@@ -53,11 +53,18 @@ pub(super) static PAYLOAD: Effect = Effect {
         kind: EntryKind::Static,
         hidden_by_parameters: true,
     },
-    hypotheses: whole_robot,
+    hypotheses: on_last_link,
     columns: payload,
     described: &[],
     implausible: |_| None,
 };
+
+/// On the last joint, whose link carries it, if anything moves at all.
+fn on_last_link(effects: &Effects, reach: &Reach<'_>) -> Vec<Hypothesis> {
+    let last = effects.joints().saturating_sub(1);
+    let moves = reach.moving().next();
+    moves.map(|_| plain(vec![last])).into_iter().collect()
+}
 
 /// On no joint, if anything moves at all.
 fn whole_robot(_: &Effects, reach: &Reach<'_>) -> Vec<Hypothesis> {

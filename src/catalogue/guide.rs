@@ -38,6 +38,10 @@ pub fn guide() -> String {
             "Of the model's own torque: rebuilt after each refit",
         ),
         (EntryKind::Memory, "With memory: a state runs along the log"),
+        (
+            EntryKind::Yielding,
+            "With memory, and links that move against their drives",
+        ),
     ] {
         let _ = write!(text, "\n## {title}\n");
         let all = entries();

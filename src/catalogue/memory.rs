@@ -7,8 +7,8 @@ use idim_runtime::diagnose::{Entry, EntryKind, Hypothesis, TorqueColumn};
 use idim_runtime::observe::dahl;
 
 use super::along::Along;
-use super::drive::direction;
 use super::evaluate::Motion;
+use super::gear::Link;
 use super::reach::{geometric, plain};
 use super::{Effect, Effects, Reach};
 
@@ -93,7 +93,7 @@ pub(super) static JOINT_ELASTICITY: Effect = Effect {
         shape: &[("f", "Hz"), ("damping", "1")],
         confused_with: &["rotor_inertia", "time_shift", "link_length"],
         experiment: "a chirp; a test with the output locked",
-        kind: EntryKind::Memory,
+        kind: EntryKind::Yielding,
         hidden_by_parameters: false,
     },
     hypotheses: elasticity_grid,
@@ -121,46 +121,23 @@ fn elasticity_grid(_: &Effects, reach: &Reach<'_>) -> Vec<Hypothesis> {
     reach.moving().map(on_joint).collect()
 }
 
-/// The link lies behind its drive by what the gear yields: the torque that it carries, which swings at
-/// the resonance of the link on the locked drive, over the stiffness. For one link alone this is
-/// exact: J qdd (1 - (J/k) s^2 G(s)) = J qdd G(s), G = w^2 / (s^2 + w^2), w^2 = k/J.
+/// The link lies behind its drive by what the gear yields to the torque that it carries. The shape is
+/// that of a link with the median of its inertia on a locked drive.
 fn elasticity(along: &Along<'_>, joints: &[usize], shape: &[f64]) -> Vec<TorqueColumn> {
     let (&[joint], &[f, damping]) = (joints, shape) else {
         return Vec::new();
     };
-    let carried = &along.carried()[joint];
-    let position = resonance(carried, along.signals.rate_hz, TAU * f, damping);
-    let position = position.into_iter().map(|y| -y).collect();
-    let by = along.displacement(position);
+    let Some(link) = Link::of(along, joint) else {
+        return Vec::new();
+    };
+    let w = TAU * f;
+    let stiffness = w * w * link.mass;
+    let behind = link.yields(stiffness, 2.0 * damping * w * link.mass);
     vec![TorqueColumn {
         name: format!("CE{}", joint + 1),
         unit: along.by_kind(joint, "rad/(N m)", "m/N"),
-        torque: along.link_displaced(joint, &by),
+        torque: along.link_displaced(joint, &behind.times(-stiffness)),
     }]
-}
-
-/// y'' + 2 damping w y' + w^2 y = w^2 u from rest at the first sample: exact for an input that is
-/// linear between samples. `w` in rad/s, damping between 0 and 1.
-pub(super) fn resonance(u: &[f64], rate_hz: f64, w: f64, damping: f64) -> Vec<f64> {
-    let (decay, dt) = (damping * w, 1.0 / rate_hz);
-    let own = w * (1.0 - damping * damping).max(1e-12).sqrt();
-    let (sin, cos) = (own * dt).sin_cos();
-    let fade = (-decay * dt).exp();
-    let (mut y, mut slope) = (u.first().copied().unwrap_or(0.0), 0.0);
-    let mut out = Vec::with_capacity(u.len());
-    out.extend(u.first());
-    for pair in u.windows(2) {
-        // The response to a ramp runs behind it; what is left swings.
-        let rise = (pair[1] - pair[0]) * rate_hz;
-        let behind = 2.0 * damping * rise / w;
-        let (z, zd) = (y - (pair[0] - behind), slope - rise);
-        let swing = fade * (z * (cos + decay / own * sin) + zd / own * sin);
-        let swing_rate = fade * (zd * (cos - decay / own * sin) - z * w * w / own * sin);
-        y = pair[1] - behind + swing;
-        slope = rise + swing_rate;
-        out.push(y);
-    }
-    out
 }
 
 pub(super) static BACKLASH: Effect = Effect {
@@ -169,13 +146,13 @@ pub(super) static BACKLASH: Effect = Effect {
         meaning: "play of a gear: the link lies behind or before the drive by half the gap",
         formula: "d(tau_links)/dq_j along -gap/2 sgn(tau_links_j) and its time derivatives",
         parameters: &[("gap", "rad")],
-        shape: &[],
+        shape: &[("play", "rad")],
         confused_with: &["presliding", "stribeck", "joint_elasticity"],
         experiment: "sign changes of the load at a constant direction of motion",
-        kind: EntryKind::Memory,
+        kind: EntryKind::Yielding,
         hidden_by_parameters: false,
     },
-    hypotheses: |_, reach| reach.each_joint(),
+    hypotheses: |_, reach| reach.each_of(|_| true, |_| geometric(4e-4, 2.5e-2, 7)),
     columns: backlash,
     described: &[],
     implausible: |values| match values.first() {
@@ -185,16 +162,16 @@ pub(super) static BACKLASH: Effect = Effect {
     },
 };
 
-fn backlash(along: &Along<'_>, joints: &[usize], _: &[f64]) -> Vec<TorqueColumn> {
-    let &[joint] = joints else {
+fn backlash(along: &Along<'_>, joints: &[usize], shape: &[f64]) -> Vec<TorqueColumn> {
+    let (&[joint], &[play]) = (joints, shape) else {
         return Vec::new();
     };
-    let side = direction(&along.carried()[joint]);
-    let position = side.into_iter().map(|side| -0.5 * side).collect();
-    let by = along.displacement(position);
+    let Some(link) = Link::of(along, joint) else {
+        return Vec::new();
+    };
     vec![TorqueColumn {
         name: format!("gap{}", joint + 1),
         unit: along.by_kind(joint, "rad", "m"),
-        torque: along.link_displaced(joint, &by),
+        torque: along.link_displaced(joint, &link.plays(play).times(-1.0 / play)),
     }]
 }

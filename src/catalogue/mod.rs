@@ -14,6 +14,7 @@ mod drive;
 mod evaluate;
 mod extension;
 mod friction;
+mod gear;
 mod geometry;
 mod guide;
 mod memory;

@@ -142,17 +142,11 @@ fn eccentricity(along: &Along<'_>, joints: &[usize], shape: &[f64]) -> Vec<Torqu
     };
     // sin(N q + phase), with phase pi/2 for the cosine.
     let wave = |symbol: &str, phase: f64| {
-        let mut by = Displacement {
-            position: Vec::with_capacity(along.len()),
-            velocity: Vec::with_capacity(along.len()),
-            acceleration: Vec::with_capacity(along.len()),
-        };
+        let mut by = Displacement::with_capacity(along.len());
         for i in 0..along.len() {
             let (qd, qdd) = (along.signals.qd[joint][i], along.signals.qdd[joint][i]);
             let (sin, cos) = (n * along.signals.q[joint][i] + phase).sin_cos();
-            by.position.push(sin);
-            by.velocity.push(n * qd * cos);
-            by.acceleration.push(n * qdd * cos - n * n * qd * qd * sin);
+            by.push(sin, n * qd * cos, n * qdd * cos - n * n * qd * qd * sin);
         }
         TorqueColumn {
             name: format!("{symbol}{}", joint + 1),

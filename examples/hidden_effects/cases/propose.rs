@@ -42,7 +42,7 @@ pub fn propose(name: &'static str, s: f64, host: &Host, random: &mut Random) -> 
     let of_robot = |hidden: Hidden| Some((vec![], hidden));
     let (joints, hidden) = match name {
         "rotor_inertia" => of_joint(rotor(joint, s, host, random)),
-        "payload" => of_robot(payload(s, host, random)),
+        "payload" => Some((vec![host.ratings.len() - 1], payload(s, host, random))),
         "base_tilt" => of_robot(tilt(s, random)),
         "external_force" => of_robot(force(s, host, random)),
         "load_dependent_friction" => of_joint(Hidden::Load {

@@ -16,7 +16,7 @@ pub(super) fn absorbed(bench: &Bench<'_>, before: &State) -> Vec<Refused> {
         .filter(|(_, hypothesis)| entry(hypothesis).hidden_by_parameters)
         .map(|(number, _)| number)
         .collect();
-    let candidates = bench.candidates(&hidden, &bench.beside(&before.predicted));
+    let candidates = bench.candidates(&hidden, &bench.asking(&before.predicted));
     let taken_up = candidates.into_iter().filter(|candidate| {
         let acts = !candidate.columns.is_empty();
         acts && bench

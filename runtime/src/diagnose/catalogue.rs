@@ -36,6 +36,9 @@ pub enum EntryKind {
     ModelDependent,
     /// A state equation that runs along the log.
     Memory,
+    /// The same, of a link that moves against its drive: the motion itself shows it, and one that
+    /// was simulated without it says little of it.
+    Yielding,
 }
 
 /// One effect on given joints, its shape still open.

@@ -1,5 +1,6 @@
 //! Whether an effect keeps on another motion what it promises from the training log.
 
+use super::catalogue::EntryKind;
 use super::joined::Joined;
 use super::linear::add_scaled;
 use super::nominal;
@@ -75,6 +76,21 @@ fn kept(
     }
 }
 
+/// A resonance makes much of the noise of a measured motion, which no simulation without it can
+/// stand in for: the share of such a column that is none, as far as it may be little.
+fn attenuation(along: f64, square: f64) -> f64 {
+    (along / square.max(f64::MIN_POSITIVE)).clamp(CONFIRMED, 1.0)
+}
+
+/// Rows a share of the way from some to others.
+fn between(before: &[Vec<f64>], after: &[Vec<f64>], share: f64) -> Vec<Vec<f64>> {
+    let of_joint = |(before, after): (&Vec<f64>, &Vec<f64>)| -> Vec<f64> {
+        let pairs = before.iter().zip(after);
+        pairs.map(|(b, a)| b + share * (a - b)).collect()
+    };
+    before.iter().zip(after).map(of_joint).collect()
+}
+
 impl Stepwise<'_> {
     /// The state with a contender, if it keeps its promise on another motion.
     pub(super) fn confirmed(
@@ -103,9 +119,17 @@ impl Stepwise<'_> {
         let joints = contender.candidate.columns.iter();
         let joints: Vec<usize> = joints.flat_map(|c| c.0.iter().map(|p| p.0)).collect();
         let before = self.bench.rows(state, confirm);
+        let swings = self.bench.kind(contender.candidate.number) == EntryKind::Yielding;
         let kept = |after: &[Vec<f64>]| -> Result<(), Broken> {
-            let change = self.bench.difference(confirm, (&before, after));
-            kept(confirm, &joints, (&before, after), change)
+            let (along, square) = self.bench.difference(confirm, (&before, after));
+            let share = if swings {
+                attenuation(along, square)
+            } else {
+                1.0
+            };
+            let after = between(&before, after, share);
+            let change = (share * along, share * share * square);
+            kept(confirm, &joints, (&before, &after), change)
         };
         // Along the measured motion, or, where its noise drowns the columns, along one without.
         let after = self.bench.rows(&next, confirm);

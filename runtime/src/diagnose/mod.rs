@@ -48,6 +48,7 @@ use crate::settings::Derivatives;
 use joined::Joined;
 use noise::Noise;
 use null::{Null, Prior};
+use repeats::own_noise;
 use state::{Bench, Predictions, State};
 use stepwise::Stepwise;
 use summary::Asked;
@@ -197,6 +198,7 @@ fn searched(
         noise,
         null: system,
         least_gain: known.map_or(f64::NEG_INFINITY, |_| nominal::LEAST_GAIN),
+        repeated: joined.tracks.iter().all(|track| own_noise(track).is_some()),
     };
     let before = State {
         system: system.clone(),

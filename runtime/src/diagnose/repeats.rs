@@ -12,6 +12,10 @@ const SAME: f64 = 1e-3;
 /// Shortest period looked for, s.
 const SHORTEST: f64 = 0.5;
 
+/// Share of a period over which the ends of a log come to count, and what they count for at least.
+const TAPER: f64 = 0.1;
+const FAINT: f64 = 1e-3;
+
 /// Rows that repeat with a period.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Repeats {
@@ -57,6 +61,73 @@ pub(super) fn find(track: &Track, segment: Range<usize>) -> Option<Repeats> {
                 if next.1 < best.1 { next } else { best }
             });
     (distance < SAME).then_some(Repeats { segment, period })
+}
+
+/// The motion of a log that repeats itself as its other periods show it: for every sample the mean
+/// of those that lie whole periods away. Its noise is not that of the sample. The ends of the log
+/// count less, so that the mean does not jump where another set of periods takes over.
+pub(super) fn elsewhere(track: &Track) -> Option<Vec<Vec<f64>>> {
+    let q = &track.source.recording.q;
+    let period = own_noise(track)?;
+    let len = q.first()?.len();
+    let weight = |k: usize| {
+        let edge = (k.min(len - 1 - k) as f64 / (TAPER * period as f64)).min(1.0);
+        edge * edge * (3.0 - 2.0 * edge) + FAINT
+    };
+    let at = |q: &Vec<f64>, k: usize| {
+        let same = (k % period..len)
+            .step_by(period)
+            .filter(|other| *other != k);
+        let (sum, weights) = same.fold((0.0, 0.0), |(sum, weights), other| {
+            (sum + weight(other) * q[other], weights + weight(other))
+        });
+        sum / weights
+    };
+    Some(
+        q.iter()
+            .map(|q| (0..len).map(|k| at(q, k)).collect())
+            .collect(),
+    )
+}
+
+/// The period of a log, in samples, each of which has a noise of its own. Where most samples are
+/// exactly those of a period before, the encoder rounds them alike, and its error repeats as well.
+pub(super) fn own_noise(track: &Track) -> Option<usize> {
+    let period = samples(track, find(track, 0..track.rows())?.period);
+    let apart = |q: &Vec<f64>| {
+        let pairs = q.iter().zip(q.get(period..).unwrap_or_default());
+        let count = pairs.len();
+        2 * pairs.filter(|(a, b)| a != b).count() > count
+    };
+    let mut moving = track
+        .source
+        .recording
+        .q
+        .iter()
+        .filter(|q| q.iter().any(|x| *x != q[0]));
+    moving.all(apart).then_some(period)
+}
+
+/// A period in samples, about one in rows: the one after which the motion is most nearly the same.
+fn samples(track: &Track, rows: usize) -> usize {
+    let q = &track.source.recording.q;
+    let len = q.first().map_or(0, Vec::len);
+    let ratio = (track.step() * track.motion.rate_hz).round().max(1.0) as usize;
+    let apart = |lag: usize| -> f64 {
+        let of_joint = |q: &Vec<f64>| -> f64 {
+            (0..len.saturating_sub(lag))
+                .step_by(7)
+                .map(|t| (q[t + lag] - q[t]).powi(2))
+                .sum()
+        };
+        let count = len.saturating_sub(lag).max(1) as f64;
+        q.iter().map(of_joint).sum::<f64>() / count
+    };
+    let around = (rows - 1) * ratio..=(rows + 1) * ratio;
+    let best = around
+        .map(|lag| (lag, apart(lag)))
+        .min_by(|a, b| a.1.total_cmp(&b.1));
+    best.map_or(rows * ratio, |(lag, _)| lag)
 }
 
 /// Rows with the mean over periods taken away and what that costs given back, and the means

@@ -2,10 +2,11 @@
 
 use rayon::prelude::*;
 
-use super::catalogue::{ColumnsAlong, EntryKind};
+use super::catalogue::EntryKind;
 use super::joined::Joined;
-use super::state::{Bench, State};
+use super::state::{Asking, Bench, State};
 use super::system::{Gain, Sparse, System};
+use super::track::Decimated;
 
 /// What every degree of freedom costs.
 pub(super) const PENALTY: f64 = 10.0;
@@ -16,21 +17,65 @@ pub(super) const PENALTY: f64 = 10.0;
 const PLAIN: f64 = 25.0;
 const THROUGH_THE_LOOP: f64 = 30.0;
 
+/// Gain along the instruments, with the shape found along the measured motion, that an effect must
+/// have which only the measured motion shows.
+const SEEN: f64 = 16.0;
+
 /// Evaluations of a shape's refinement in each direction.
 const EVALUATIONS: usize = 7;
 
-/// A shape to the scale that it is searched on, or back.
-type Map = fn(f64) -> f64;
+/// Share of the way to its neighbours within which a shape is searched once more.
+const CLOSER: f64 = 0.2;
+
+/// The scale that a shape is searched on.
+#[derive(Clone, Copy, Debug)]
+enum Scale {
+    Linear,
+    Logarithmic,
+}
+
+impl Scale {
+    /// Logarithmic between values that are factors apart.
+    fn of((low, high): (f64, f64)) -> Scale {
+        match low > 0.0 && high / low > 1.5 {
+            true => Scale::Logarithmic,
+            false => Scale::Linear,
+        }
+    }
+
+    fn forth(self, x: f64) -> f64 {
+        match self {
+            Scale::Linear => x,
+            Scale::Logarithmic => x.ln(),
+        }
+    }
+
+    fn back(self, x: f64) -> f64 {
+        match self {
+            Scale::Linear => x,
+            Scale::Logarithmic => x.exp(),
+        }
+    }
+
+    /// The ends, on the scale, and drawn in by a share towards a value between them.
+    fn closer(self, (low, high): (f64, f64), around: f64, share: f64) -> (f64, f64) {
+        let middle = self.forth(around);
+        let towards = |end: f64| middle + share * (self.forth(end) - middle);
+        (towards(low), towards(high))
+    }
+}
 
 /// A hypothesis with one shape.
 #[derive(Clone, Debug)]
 pub(super) struct Candidate {
     pub number: usize,
     pub shape: Vec<f64>,
-    /// Its columns along the motion of the instruments.
+    /// Its columns along the motion of the instruments, or of the log where only that shows it.
     pub columns: Vec<Sparse>,
     /// Shares of the null model's basis in them.
     known: Vec<Vec<f64>>,
+    /// The first of its columns along the instruments, where the others are not, and its shares.
+    beside: Option<(Sparse, Vec<f64>)>,
 }
 
 /// What a candidate gains in a state.
@@ -46,10 +91,10 @@ pub(super) struct Contender {
 
 impl Bench<'_> {
     /// Columns of hypotheses over their grids.
-    pub fn candidates(&self, numbers: &[usize], along: &[ColumnsAlong<'_>]) -> Vec<Candidate> {
+    pub fn candidates(&self, numbers: &[usize], asking: &Asking<'_>) -> Vec<Candidate> {
         let of_hypothesis = |&number: &usize| -> Vec<Candidate> {
             let grid = &self.hypotheses[number].grid;
-            self.candidates_at(number, grid, along)
+            self.candidates_at(number, grid, asking)
         };
         numbers.par_iter().flat_map_iter(of_hypothesis).collect()
     }
@@ -58,24 +103,28 @@ impl Bench<'_> {
         &self,
         number: usize,
         shapes: &[Vec<f64>],
-        along: &[ColumnsAlong<'_>],
+        asking: &Asking<'_>,
     ) -> Vec<Candidate> {
-        let made = self
-            .instruments
-            .columns(along, &self.hypotheses[number], shapes);
-        let candidate = |(shape, columns): (&Vec<f64>, Vec<super::track::Decimated>)| {
-            let white =
-                |column: &super::track::Decimated| self.train.whiten(&column.torque, self.noise);
+        let made = self.instruments_of(number, shapes, asking);
+        let beside = self.beside_measured(number, shapes, asking);
+        let white = |column: &Decimated| self.train.whiten(&column.torque, self.noise);
+        let candidate = |(place, columns): (usize, Vec<Decimated>)| {
             let columns: Vec<Sparse> = columns.iter().map(white).collect();
             let known = columns.iter().map(|column| self.null.shares(column, 0));
+            let beside = beside.get(place).and_then(|columns| columns.first());
+            let beside = beside.map(white);
             Candidate {
                 number,
-                shape: shape.clone(),
+                shape: shapes[place].clone(),
                 known: known.collect(),
                 columns,
+                beside: beside.map(|column| {
+                    let shares = self.null.shares(&column, 0);
+                    (column, shares)
+                }),
             }
         };
-        shapes.iter().zip(made).map(candidate).collect()
+        made.into_iter().enumerate().map(candidate).collect()
     }
 
     /// What a candidate gains in a system that grew from the null model.
@@ -95,11 +144,23 @@ impl Bench<'_> {
         let freedom = gain.columns() + searched(&self.hypotheses[candidate.number].grid).len();
         let entry = &self.catalogue.entries()[self.hypotheses[candidate.number].entry];
         let threshold = match entry.kind {
-            EntryKind::ModelDependent | EntryKind::Memory => THROUGH_THE_LOOP,
+            EntryKind::ModelDependent | EntryKind::Memory | EntryKind::Yielding => THROUGH_THE_LOOP,
             _ if entry.hidden_by_parameters => THROUGH_THE_LOOP,
             _ => PLAIN,
         };
-        let margin = gain.square - PENALTY * freedom as f64 - threshold;
+        let penalty = PENALTY * freedom as f64;
+        let margin = gain.square - penalty - threshold;
+        // Noise in the measured motion looks like a link that yields: some of the gain must be there
+        // without it.
+        let beside = candidate.beside.as_ref().map(|(column, shares)| {
+            let alone = system.gain(std::slice::from_ref(column), std::slice::from_ref(shares));
+            let same = gain.values.first().zip(alone.values.first());
+            match same {
+                Some((Some(a), Some(b))) if a * b > 0.0 => alone.square - SEEN,
+                _ => f64::NEG_INFINITY,
+            }
+        });
+        let margin = beside.map_or(margin, |beside| margin.min(beside));
         (gain, freedom, margin)
     }
 
@@ -133,35 +194,29 @@ impl Bench<'_> {
     }
 
     /// Improves the shape of a contender between the neighbours on its grid.
-    pub fn refine(
-        &self,
-        contender: Contender,
-        state: &State,
-        along: &[ColumnsAlong<'_>],
-    ) -> Contender {
+    pub fn refine(&self, contender: Contender, state: &State, asking: &Asking<'_>) -> Contender {
         let mut best = contender;
         let hypothesis = &self.hypotheses[best.candidate.number];
-        for place in searched(&hypothesis.grid) {
-            let Some((low, high)) = neighbours(hypothesis, place, best.candidate.shape[place])
-            else {
+        let places = searched(&hypothesis.grid);
+        // Shapes that depend on each other are gone through once more, closer.
+        let rounds = if places.len() > 1 { 2 } else { 1 };
+        for (round, place) in (0..rounds).flat_map(|r| places.iter().map(move |p| (r, *p))) {
+            let around = best.candidate.shape[place];
+            let Some(ends) = neighbours(hypothesis, place, around) else {
                 continue;
             };
-            let logarithmic = low > 0.0 && high / low > 1.5;
-            let (forth, back): (Map, Map) = if logarithmic {
-                (f64::ln, f64::exp)
-            } else {
-                (|x| x, |x| x)
-            };
+            let scale = Scale::of(ends);
+            let ends = scale.closer(ends, around, CLOSER.powi(round));
             let shape = best.candidate.shape.clone();
             let at = |x: f64| {
                 let mut shape = shape.clone();
-                shape[place] = back(x);
-                let made = self.candidates_at(best.candidate.number, &[shape], along);
+                shape[place] = scale.back(x);
+                let made = self.candidates_at(best.candidate.number, &[shape], asking);
                 made.into_iter()
                     .next()
                     .map(|candidate| self.contend(candidate, &state.system))
             };
-            let found = golden((forth(low), forth(high)), at);
+            let found = golden(ends, at);
             if let Some(found) = found.filter(|found| found.gain.square > best.gain.square) {
                 best = found;
             }

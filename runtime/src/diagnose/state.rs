@@ -46,6 +46,15 @@ pub(super) struct Bench<'a> {
     pub null: &'a System,
     /// Share of the torque error of some joint that an effect must take away.
     pub least_gain: f64,
+    /// Whether the instruments are the log's own other periods, which show how links move against
+    /// their drives.
+    pub repeated: bool,
+}
+
+/// The columns of the catalogue along the motions that a hypothesis is asked on.
+pub(super) struct Asking<'b> {
+    instruments: Vec<ColumnsAlong<'b>>,
+    measured: Vec<ColumnsAlong<'b>>,
 }
 
 /// The model with some effects.
@@ -66,13 +75,36 @@ pub(super) struct Predictions {
 }
 
 impl<'a> Bench<'a> {
-    /// The columns of the catalogue along the instruments' motions.
-    pub fn beside<'b>(&self, predicted: &'b Predictions) -> Vec<ColumnsAlong<'b>>
+    /// The columns of the catalogue, where the model predicts this.
+    pub fn asking<'b>(&self, predicted: &'b Predictions) -> Asking<'b>
     where
         'a: 'b,
     {
-        self.instruments
-            .along(self.catalogue, &predicted.instruments)
+        Asking {
+            instruments: self
+                .instruments
+                .along(self.catalogue, &predicted.instruments),
+            measured: self.train.along(self.catalogue, &predicted.train),
+        }
+    }
+
+    /// Whether only the measured motion shows an effect: it has no other instruments.
+    pub fn only_measured(&self, number: usize) -> bool {
+        !self.repeated && self.kind(number) == EntryKind::Yielding
+    }
+
+    /// The columns of a hypothesis for each of `shapes`, along its instruments.
+    pub fn instruments_of(
+        &self,
+        number: usize,
+        shapes: &[Vec<f64>],
+        asking: &Asking<'_>,
+    ) -> Vec<Vec<Decimated>> {
+        let (joined, along) = match self.only_measured(number) {
+            true => (self.train, &asking.measured),
+            false => (self.instruments, &asking.instruments),
+        };
+        joined.columns(along, &self.hypotheses[number], shapes)
     }
 
     /// Whether the parameters of the model are known and stay as they are.
@@ -82,6 +114,23 @@ impl<'a> Bench<'a> {
 
     pub fn kind(&self, number: usize) -> EntryKind {
         self.catalogue.entries()[self.hypotheses[number].entry].kind
+    }
+
+    /// Where only the measured motion shows a hypothesis, its columns along the instruments as well.
+    pub fn beside_measured(
+        &self,
+        number: usize,
+        shapes: &[Vec<f64>],
+        asking: &Asking<'_>,
+    ) -> Vec<Vec<Decimated>> {
+        match self.only_measured(number) {
+            true => {
+                let hypothesis = &self.hypotheses[number];
+                let along = &asking.instruments;
+                self.instruments.columns(along, hypothesis, shapes)
+            }
+            false => Vec::new(),
+        }
     }
 
     /// The null model with effects (number and shape), starting from what `before` predicts.
@@ -103,16 +152,13 @@ impl<'a> Bench<'a> {
 
     fn fitted(&self, chosen: &[(usize, Vec<f64>)], predicted: Predictions) -> State {
         let mut effects: Vec<Effect> = Vec::new();
-        let along = self.train.along(self.catalogue, &predicted.train);
-        let beside = self
-            .instruments
-            .along(self.catalogue, &predicted.instruments);
+        let asking = self.asking(&predicted);
         for (number, shape) in chosen {
             let hypothesis = &self.hypotheses[*number];
             let shapes = std::slice::from_ref(shape);
-            let made = self.train.columns(&along, hypothesis, shapes);
+            let made = self.train.columns(&asking.measured, hypothesis, shapes);
             let made: Vec<_> = made.into_iter().flatten().collect();
-            let instruments = self.instruments.columns(&beside, hypothesis, shapes);
+            let instruments = self.instruments_of(*number, shapes, &asking);
             let white = |column: &Decimated| self.train.whiten(&column.torque, self.noise);
             let pairs = made.iter().zip(instruments.iter().flatten());
             let pairs: Vec<Pair> = pairs.map(|(w, z)| (white(w), white(z))).collect();
@@ -128,7 +174,7 @@ impl<'a> Bench<'a> {
                 pairs,
             });
         }
-        drop((along, beside));
+        drop(asking);
         let all: Vec<Pair> = effects.iter().flat_map(|e| e.pairs.clone()).collect();
         let system = self.null.with(&all);
         let np = self.model.columns().len();
@@ -219,15 +265,17 @@ impl<'a> Bench<'a> {
     }
 
     /// Torque that a state predicts along a track at its full rate, by joint. Columns that
-    /// differentiate the model's torque, or have a memory, follow the smooth part of the motion.
+    /// differentiate the model's torque, or have a memory, follow the smooth part of the motion, but
+    /// for links that swing beyond it.
     pub fn torque(&self, state: &State, track: &Track) -> Vec<Vec<f64>> {
         let mut torque = track.predict(self.model, &state.parameters).model;
         let smooth = track.beside(self.model, &Instead::Below(SMOOTH_HZ));
         let smooth = smooth.unwrap_or_else(|_| track.clone());
-        let (plain, other): (Vec<&Effect>, Vec<&Effect>) = state
-            .effects
-            .iter()
-            .partition(|effect| self.kind(effect.number) == EntryKind::Static);
+        let (plain, other): (Vec<&Effect>, Vec<&Effect>) =
+            state.effects.iter().partition(|effect| {
+                let kind = self.kind(effect.number);
+                matches!(kind, EntryKind::Static | EntryKind::Yielding)
+            });
         for (along, effects) in [(track, plain), (&smooth, other)] {
             let one = Joined::new(vec![along.clone()]);
             let predicted = self.predicted(&one, &state.parameters, &state.effects);

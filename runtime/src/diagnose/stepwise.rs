@@ -2,11 +2,11 @@
 
 use rayon::prelude::*;
 
-use super::catalogue::{ColumnsAlong, EntryKind};
+use super::catalogue::EntryKind;
 use super::joined::Joined;
 use super::linear::chi_square_survival;
 use super::screen::{Candidate, Contender};
-use super::state::{Bench, State};
+use super::state::{Asking, Bench, State};
 use super::system::Pair;
 
 /// Effects named at most.
@@ -94,7 +94,7 @@ impl<'a> Stepwise<'a> {
         let (fixed, dependent): (Vec<usize>, Vec<usize>) =
             all.partition(|number| bench.kind(*number) == EntryKind::Static);
         Stepwise {
-            fixed: bench.candidates(&fixed, &bench.beside(&null.predicted)),
+            fixed: bench.candidates(&fixed, &bench.asking(&null.predicted)),
             bench,
             confirm,
             dependent,
@@ -133,12 +133,12 @@ impl<'a> Stepwise<'a> {
 
     fn forward(&mut self, mut state: State, named: &mut Vec<Named>) -> State {
         while named.len() < MOST {
-            let along = self.bench.beside(&state.predicted);
-            let ranking = self.ranking(&state, named, &along);
-            let Some((next, found)) = self.choose(ranking, &state, named, &along) else {
+            let asking = self.bench.asking(&state.predicted);
+            let ranking = self.ranking(&state, named, &asking);
+            let Some((next, found)) = self.choose(ranking, &state, named, &asking) else {
                 break;
             };
-            drop(along);
+            drop(asking);
             named.push(found);
             state = next;
         }
@@ -146,13 +146,8 @@ impl<'a> Stepwise<'a> {
     }
 
     /// All hypotheses that are not named yet, best first.
-    fn ranking(
-        &self,
-        state: &State,
-        named: &[Named],
-        along: &[ColumnsAlong<'_>],
-    ) -> Vec<Contender> {
-        let dependent = self.bench.candidates(&self.dependent, along);
+    fn ranking(&self, state: &State, named: &[Named], asking: &Asking<'_>) -> Vec<Contender> {
+        let dependent = self.bench.candidates(&self.dependent, asking);
         let mut candidates: Vec<&Candidate> = self.fixed.iter().chain(&dependent).collect();
         candidates.retain(|candidate| !named.iter().any(|n| n.number == candidate.number));
         self.bench.ranking(&candidates, state, NEARLY)
@@ -164,10 +159,10 @@ impl<'a> Stepwise<'a> {
         ranking: Vec<Contender>,
         state: &State,
         named: &[Named],
-        along: &[ColumnsAlong<'_>],
+        asking: &Asking<'_>,
     ) -> Option<(State, Named)> {
         let near = ranking.into_par_iter().take(CLOSELY);
-        let mut open: Vec<Contender> = near.map(|c| self.bench.refine(c, state, along)).collect();
+        let mut open: Vec<Contender> = near.map(|c| self.bench.refine(c, state, asking)).collect();
         let least = if self.confirm.is_some() {
             0.0
         } else {
@@ -305,14 +300,14 @@ impl<'a> Stepwise<'a> {
             let chosen: Vec<(usize, Vec<f64>)> =
                 others.iter().map(|n| (n.number, n.shape.clone())).collect();
             let without = self.bench.settle(&chosen, &state.predicted);
-            let along = self.bench.beside(&without.predicted);
-            let ranking = self.ranking(&without, &others, &along);
+            let asking = self.bench.asking(&without.predicted);
+            let ranking = self.ranking(&without, &others, &asking);
             let margin = ranking
                 .iter()
                 .find(|c| c.candidate.number == own.number)
-                .map(|c| self.bench.refine(c.clone(), &without, &along).margin);
+                .map(|c| self.bench.refine(c.clone(), &without, &asking).margin);
             if margin.is_none_or(|margin| margin <= 0.0) {
-                drop(along);
+                drop(asking);
                 self.refuse(
                     own.number,
                     "beside the other effects nothing is left of it".into(),
@@ -328,7 +323,7 @@ impl<'a> Stepwise<'a> {
             }
             // What came nearest is that of the search forward.
             let noted = std::mem::take(&mut self.ranked);
-            let chosen = self.choose(ranking, &without, &others, &along);
+            let chosen = self.choose(ranking, &without, &others, &asking);
             self.ranked = noted;
             let Some((next, found)) = chosen.filter(|(_, found)| found.number != own.number) else {
                 continue;
