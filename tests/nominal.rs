@@ -261,7 +261,7 @@ fn a_payload_is_named_with_its_mass_and_centre() {
     let diagnosis = said(&change);
     is_named(
         &diagnosis,
-        ("payload", &[]),
+        ("payload", &[4]),
         &[("PM", 2.0), ("PMX", 0.06), ("PMY", -0.1), ("PMZ", 0.3)],
     );
     let load = diagnosis.changed.unwrap().payload.unwrap();
