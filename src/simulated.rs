@@ -1,23 +1,28 @@
 //! The motion of a log simulated in closed loop, with the model as a diagnosis found it described
 //! and with what was found.
 //!
-//! Effects that a description can ask for are columns of the extended model. Errors of drives and
-//! encoders, friction under load and friction that drifts are parts of the simulated plant.
+//! Effects that a description can ask for are columns of the extended model; a turned base, other
+//! lengths and gears that yield change the simulated robot itself. Errors of drives and encoders,
+//! friction under load and friction that drifts are parts of the plant around it.
 
+use idim_codegen::base::BaseError;
 use idim_runtime::diagnose::Log;
 use idim_runtime::log::{Controller, Reference, Start};
 use idim_runtime::model::{IdentificationModel, JointKind};
 use idim_runtime::report::{Change, Diagnosis, FoundEffect, GapCurves, Rms};
 use idim_runtime::simulate::{
-    ClosedLoop, Drift, Grid, LoadFriction, Method, Options, Plant, SimulateError, State, beginning,
-    controlled, feedforward_of, off_reference,
+    ClosedLoop, Drift, Drive, Encoder, Grid, LoadFriction, Method, Options, Plant, SimulateError,
+    State, Trajectory, beginning, controlled, feedforward_of, inverse_dynamics, off_reference,
 };
 
-use crate::catalogue::Extension;
+use crate::catalogue::{Effects, Extension, Gear, Whole};
 use crate::interpreted::Interpreter;
 
 /// Step of the integration, s: far below what a controlled robot does, and a log's rate.
 const STEP_S: f64 = 1e-3;
+
+/// Step against the stops of a gear.
+const STOPS_STEP_S: f64 = 2.5e-4;
 
 /// A motion without and with the effects, one series per joint on the grid of the log; rad or m.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,6 +31,8 @@ pub struct Motions {
     pub before: Vec<Vec<f64>>,
     /// With what was found.
     pub after: Vec<Vec<f64>>,
+    /// What of it could not be simulated, in a sentence each.
+    pub left_out: Vec<String>,
 }
 
 /// Why there is no simulation of a log that has a reference and a controller.
@@ -50,35 +57,30 @@ pub enum NoMotion {
         /// Where, s.
         second: f64,
     },
+    /// The robot with what was found.
+    #[error("{log}: its motion is not simulated: {source}")]
+    Robot {
+        /// The log.
+        log: String,
+        /// Why not.
+        source: BaseError,
+    },
 }
 
-/// What of a diagnosis no simulation of this kind holds, in a sentence each: bodies and hoses that
-/// act from outside, gears with a joint of their own, other geometry.
-pub fn left_out(diagnosis: &Diagnosis, extension: &Extension) -> Vec<String> {
-    let elsewhere = extension.elsewhere.iter();
-    let effects = elsewhere.filter_map(|(place, _)| diagnosis.effects.get(*place));
-    effects
-        .filter(|effect| !SIMULATED.contains(&effect.effect.as_str()))
-        .map(|effect| {
-            format!(
-                "the simulated motion is without {}, which is no part of a rigid robot and its \
-                 drives",
-                effect.effect
-            )
-        })
-        .collect()
+/// What of a diagnosis the simulation does not hold, in a sentence each.
+fn left_out(diagnosis: &Diagnosis, whole: &Whole) -> Vec<String> {
+    let effects = whole.left_out.iter();
+    let effects = effects.filter_map(|place| diagnosis.effects.get(*place));
+    let sentence = |effect: &FoundEffect| match effect.effect.as_str() {
+        "joint_elasticity" | "backlash" => format!(
+            "the simulated motion is without {}: the inertia of the rotor before the gear is not \
+             described; state it in [parameters] (IA) and ask for the effect `rotor_inertia`",
+            effect.effect
+        ),
+        other => format!("the simulated motion is without {other}, which has no simulation"),
+    };
+    effects.map(sentence).collect()
 }
-
-/// Effects outside of descriptions that a plant can have.
-const SIMULATED: [&str; 7] = [
-    "drive_gain",
-    "drive_saturation",
-    "drive_dead_zone",
-    "time_shift",
-    "encoder_eccentricity",
-    "friction_drift",
-    "load_dependent_friction",
-];
 
 /// Simulates the motion of a log under its reference and controller; `None` if it has not both.
 ///
@@ -87,7 +89,7 @@ const SIMULATED: [&str; 7] = [
 pub fn motions(
     model: &dyn IdentificationModel,
     diagnosis: &Diagnosis,
-    extension: &Extension,
+    (catalogue, extension): (&Effects, &Extension),
     log: &Log,
 ) -> Result<Option<Motions>, NoMotion> {
     let (Some(reference), Some(controller)) = (&log.companion.reference, &log.companion.controller)
@@ -117,9 +119,19 @@ pub fn motions(
         controller,
         log,
     };
-    let extended = Interpreter::new(&extension.robot);
-    let run_before = || course.run(Plant::ideal(model, &before));
-    let run_after = || course.run(plant(&extended, diagnosis, extension)?);
+    let whole = catalogue.whole(diagnosis, extension, &largest(log));
+    let whole = whole.map_err(|source| NoMotion::Robot {
+        log: name(),
+        source,
+    })?;
+    let robot = Interpreter::new(&whole.robot);
+    let run_before = || course.run(Plant::ideal(model, &before), &[]);
+    let run_after = || {
+        let mut plant = plant(&robot, diagnosis, extension, &whole)?;
+        let more = catalogue.influences(diagnosis, extension, &whole);
+        plant.influences.extend(more);
+        course.run(plant, &whole.gears)
+    };
     let (before, after) = match diagnosis.effects.is_empty() {
         true => {
             let only = run_before();
@@ -139,7 +151,14 @@ pub fn motions(
     Ok(Some(Motions {
         before: before.map_err(failed)?,
         after: after.map_err(failed)?,
+        left_out: left_out(diagnosis, &whole),
     }))
+}
+
+/// Largest torque of each joint in a log, N m or N.
+fn largest(log: &Log) -> Vec<f64> {
+    let top = |tau: &Vec<f64>| tau.iter().fold(0.0, |top: f64, tau| top.max(tau.abs()));
+    log.recording.tau.iter().flatten().map(top).collect()
 }
 
 /// What both simulations follow.
@@ -152,53 +171,98 @@ struct Course<'a> {
 }
 
 impl Course<'_> {
-    /// The true motion of a plant.
-    fn run(&self, mut plant: Plant<'_>) -> Result<Vec<Vec<f64>>, SimulateError> {
+    /// What the encoders of a plant with gears read.
+    fn run(&self, mut plant: Plant<'_>, gears: &[Gear]) -> Result<Vec<Vec<f64>>, SimulateError> {
         for encoder in &mut plant.encoders {
             encoder.resolution = self.log.companion.encoder_resolution;
         }
-        let start: State = beginning(&self.log.recording);
+        let grid = Grid::of(&self.log.recording);
+        let start = match gears {
+            [] => None,
+            gears => Some(self.behind_gears(&plant, gears, &grid)?),
+        };
+        let logged: State = beginning(&self.log.recording);
+        let logged = (self.controller.start == Start::Log).then_some(&logged);
         let plan = ClosedLoop {
             reference: self.reference,
             controller: self.controller,
             rigid: &self.rigid,
-            grid: Grid::of(&self.log.recording),
-            start: (self.controller.start == Start::Log).then_some(&start),
+            grid,
+            start: start.as_ref().or(logged),
         };
+        let stops = gears.iter().any(|gear| gear.gap > 0.0);
         let options = Options {
-            method: Method::Fixed { step_s: STEP_S },
+            method: Method::Fixed {
+                step_s: if stops { STOPS_STEP_S } else { STEP_S },
+            },
             ..Options::default()
         };
         Ok(controlled(plant, self.model, &plan, &options)?.q)
     }
+
+    /// Where a plant begins: drives as in the log or on the reference, links where their load bends
+    /// the gears to.
+    fn behind_gears(
+        &self,
+        plant: &Plant<'_>,
+        gears: &[Gear],
+        grid: &Grid,
+    ) -> Result<State, SimulateError> {
+        let first = Grid { len: 8, ..*grid };
+        let reference = Trajectory::of(self.reference, &first)?;
+        let driven = match self.controller.start {
+            Start::Log => beginning(&self.log.recording),
+            Start::Reference => State {
+                q: reference.q.iter().map(|q| q[0]).collect(),
+                qd: reference.qd.iter().map(|qd| qd[0]).collect(),
+            },
+        };
+        let load = inverse_dynamics(self.model, &self.rigid, &reference)?;
+        let joints = plant.model.joints().len();
+        let mut start = State {
+            q: vec![0.0; joints],
+            qd: vec![0.0; joints],
+        };
+        for (place, &joint) in plant.driven.iter().enumerate() {
+            (start.q[joint], start.qd[joint]) = (driven.q[place], driven.qd[place]);
+            for gear in gears.iter().filter(|gear| gear.link == joint + 1) {
+                let load = load[place][0];
+                let bent = load / gear.stiffness + 0.5 * gear.gap * load.signum();
+                start.q[gear.link] = -bent;
+            }
+        }
+        Ok(start)
+    }
 }
 
-/// The extended robot with what no description can ask for.
+/// The robot that was found with what its drives, encoders and friction do.
 fn plant<'a>(
     model: &'a Interpreter,
     diagnosis: &Diagnosis,
-    extension: &'a Extension,
+    extension: &Extension,
+    whole: &'a Whole,
 ) -> Result<Plant<'a>, SimulateError> {
-    let mut plant = Plant::ideal(model, &extension.parameters);
+    let mut plant = Plant {
+        drives: vec![Drive::IDEAL; whole.driven.len()],
+        encoders: vec![Encoder::default(); whole.driven.len()],
+        driven: whole.driven.clone(),
+        ..Plant::ideal(model, &whole.parameters)
+    };
     for (place, _) in &extension.elsewhere {
         if let Some(effect) = diagnosis.effects.get(*place) {
-            put(effect, &mut plant, extension)?;
+            put(effect, &mut plant, whole)?;
         }
     }
     Ok(plant)
 }
 
-/// Adds an effect to a plant; one that a plant cannot have is left out.
-fn put(
-    effect: &FoundEffect,
-    plant: &mut Plant<'_>,
-    extension: &Extension,
-) -> Result<(), SimulateError> {
+/// Adds an effect to a plant, if it is one of drives, encoders and friction.
+fn put(effect: &FoundEffect, plant: &mut Plant<'_>, whole: &Whole) -> Result<(), SimulateError> {
     let value = |k: usize| effect.parameters.get(k).map_or(0.0, |found| found.value);
     let shape = |name: &str| effect.shape.get(name).copied().unwrap_or(0.0);
     let column = |name: &str, joint: usize| {
-        let name = format!("{name}{}", joint + 1);
-        let mut columns = extension.robot.base.parameters.iter();
+        let name = format!("{name}{}", whole.driven[joint] + 1);
+        let mut columns = whole.robot.base.parameters.iter();
         columns.position(|parameter| parameter.name == name)
     };
     for joint in effect
@@ -223,7 +287,7 @@ fn put(
             "friction_drift" => {
                 let changes = [("FS", 0), ("FV", 1)].into_iter().filter_map(|(name, k)| {
                     let column = column(name, joint)?;
-                    Some((column, extension.parameters[column], value(k)))
+                    Some((column, whole.parameters[column], value(k)))
                 });
                 plant.influences.push(Box::new(Drift {
                     time: shape("T"),
@@ -232,7 +296,7 @@ fn put(
             }
             "load_dependent_friction" => {
                 if let Some(coulomb) = column("FS", joint) {
-                    let on = (joint, coulomb);
+                    let on = (whole.driven[joint], coulomb);
                     let load = LoadFriction::new(plant.model, plant.parameters, on, value(0))?;
                     plant.influences.push(Box::new(load));
                 }

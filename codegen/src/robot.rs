@@ -76,6 +76,14 @@ impl Robot {
     /// [`BaseError`] when the base parameters are not clear.
     pub fn new(description: Description) -> Result<Robot, BaseError> {
         let mechanism = Mechanism::new(&description);
+        Robot::of(description, mechanism)
+    }
+
+    /// The same of a mechanism that is another than the described one.
+    ///
+    /// # Errors
+    /// As [`Robot::new`].
+    pub fn of(description: Description, mechanism: Mechanism) -> Result<Robot, BaseError> {
         let mut graph = Graph::new();
         let standard = derive::standard(&mut graph, &mechanism);
         let (ends, standard) = (standard.ends, standard.parameters);

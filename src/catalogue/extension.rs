@@ -104,7 +104,7 @@ impl Effects {
     }
 
     /// A found effect as a hypothesis with its shape; `None` for one of another catalogue.
-    fn found(&self, effect: &FoundEffect) -> Option<(Hypothesis, Vec<f64>)> {
+    pub(super) fn found(&self, effect: &FoundEffect) -> Option<(Hypothesis, Vec<f64>)> {
         let entry = self.entries.iter().position(|e| e.name == effect.effect)?;
         let shape = self.entries[entry].shape.iter();
         let shape: Option<Vec<f64>> = shape

@@ -227,13 +227,13 @@ impl Length {
     }
 }
 
-fn apply(map: &[[f64; 10]; 10], ten: &[f64; 10]) -> [f64; 10] {
+pub(super) fn apply(map: &[[f64; 10]; 10], ten: &[f64; 10]) -> [f64; 10] {
     map.map(|row| row.iter().zip(ten).map(|(a, b)| a * b).sum())
 }
 
 /// The description with a moving joint `by` (m) further from its antecedent, along the line
 /// between them; `None` if they are in one place.
-fn changed(description: &Description, joint: &str, by: f64) -> Option<Description> {
+pub(super) fn changed(description: &Description, joint: &str, by: f64) -> Option<Description> {
     let mut changed = description.clone();
     match &mut changed.geometry {
         Geometry::Urdf(tree) => {
@@ -267,7 +267,7 @@ fn lengthen(parts: &mut [&mut f64], by: f64) -> Option<()> {
 
 /// How the ten parameters of a link change from its frame in one mechanism to that in another:
 /// its first body is where it was, seen from the joint.
-fn frame_change(from: &Mechanism, to: &Mechanism, link: usize) -> [[f64; 10]; 10] {
+pub(super) fn frame_change(from: &Mechanism, to: &Mechanism, link: usize) -> [[f64; 10]; 10] {
     let pose = |mechanism: &Mechanism| mechanism.joints[link].bodies.first().map(|body| body.pose);
     let mut map = [[0.0; 10]; 10];
     for column in 0..10 {

@@ -6,6 +6,7 @@
 //! evaluates them. Torque balance at joint j, positive as the drive pushes: an effect's torque
 //! stands on the side of the measured torque's prediction.
 
+mod acting;
 mod along;
 mod bodies;
 mod changes;
@@ -22,6 +23,7 @@ mod position;
 mod reach;
 #[cfg(test)]
 mod tests;
+mod whole;
 
 use std::sync::OnceLock;
 
@@ -38,6 +40,7 @@ pub use changes::Changes;
 pub use described::toml;
 pub use extension::Extension;
 pub use guide::guide;
+pub use whole::{Gear, Whole};
 
 use along::Along;
 use evaluate::Linear;

@@ -126,7 +126,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         true => motions(
             model.as_ref(),
             &mut diagnosis,
-            &extension,
+            (&catalogue, &extension),
             (&validate, &spinner),
         ),
         false => Vec::new(),
@@ -260,13 +260,13 @@ impl Arguments {
 pub(super) fn motions(
     model: &dyn IdentificationModel,
     diagnosis: &mut Diagnosis,
-    extension: &Extension,
+    (catalogue, extension): (&Effects, &Extension),
     (logs, spinner): (&[Log], &Spinner),
 ) -> Vec<Option<Motions>> {
     let mut all = Vec::new();
     for log in logs {
         spinner.say(&format!("simulating {}", log.recording.name));
-        let found = simulated::motions(model, diagnosis, extension, log);
+        let found = simulated::motions(model, diagnosis, (catalogue, extension), log);
         let found = found.unwrap_or_else(|why| {
             diagnosis.warnings.push(why.to_string());
             None
@@ -279,11 +279,9 @@ pub(super) fn motions(
         }
         all.push(found);
     }
-    if diagnosis.gap.simulation.is_some() {
-        diagnosis
-            .warnings
-            .extend(simulated::left_out(diagnosis, extension));
-    }
+    let simulated = all.iter().flatten().next();
+    let left_out = simulated.map(|motions: &Motions| motions.left_out.clone());
+    diagnosis.warnings.extend(left_out.unwrap_or_default());
     all
 }
 
@@ -299,7 +297,7 @@ fn predicted(
     for ((log, Prediction { before, after }), motions) in logs.iter().zip(predictions).zip(motions)
     {
         let mut columns = [vec![("tau", before)], vec![("tau", after)]];
-        if let Some(Motions { before, after }) = motions {
+        if let Some(Motions { before, after, .. }) = motions {
             columns[0].push(("q", before));
             columns[1].push(("q", after));
         }

@@ -8,6 +8,7 @@ pub mod effects;
 pub mod frames;
 pub mod from_mdh;
 pub mod from_urdf;
+mod gear;
 pub mod inertia;
 pub mod pose;
 

@@ -10,6 +10,7 @@ use idim::runtime::diagnose::{Log, Options, diagnose};
 use idim::runtime::log::{self, LogSpec, Part, ReadOptions};
 use idim::runtime::model::IdentificationModel;
 use idim::runtime::report::{FoundEffect, Verdict};
+use idim::simulated::{gap, motions};
 
 use super::machine::Failure;
 use super::oracle::rmse;
@@ -60,7 +61,9 @@ pub fn answer(folder: &Path) -> Result<Answer, Failure> {
         .as_ref()
         .ok_or("a log without torque")?;
     let after = &predictions.first().ok_or("no prediction")?.after;
-    let simulation = found.gap.simulation.as_ref();
+    let extension = catalogue.extension(&found)?;
+    let motions = motions(&model, &found, (&catalogue, &extension), &valid[0])?;
+    let simulation = motions.map(|motions| gap(&valid[0], &motions));
     Ok(Answer {
         verdict: found.verdict,
         effects: found.effects.iter().map(said).collect(),

@@ -37,11 +37,13 @@ pub fn line(case: &Scored) -> String {
         Category::Outside if case.answer.verdict == Verdict::Unknown => "",
         _ => "WRONG",
     };
-    let closed = case
-        .closed()
-        .map_or(String::new(), |part| format!("{:.0} %", 100.0 * part));
+    let percent = |part: Option<f64>| match part {
+        Some(part) => format!("{:.0} %", 100.0 * part),
+        None => String::new(),
+    };
+    let (closed, position) = (percent(case.closed()), percent(case.position_closed()));
     format!(
-        "{} {:8} {:>6.1} {:44} | {:8} {:44} {note:6} {closed:>6} {:.1} s",
+        "{} {:8} {:>6.1} {:44} | {:8} {:44} {note:6} {closed:>6} {position:>6} {:.1} s",
         truth.case,
         truth.robot,
         truth.evidence,
@@ -182,6 +184,7 @@ pub fn summary(cases: &[Scored]) -> String {
         quantile(position(), 0.5),
         ">= 95 %",
     );
+    row("  lower quartile", quantile(position(), 0.25), "");
     let seconds: Vec<f64> = cases.iter().map(|case| case.answer.seconds).collect();
     let mean = seconds.iter().sum::<f64>() / seconds.len().max(1) as f64;
     let longest = seconds.iter().fold(0.0, |a: f64, b| a.max(*b));

@@ -67,7 +67,7 @@ fn what_is_written_is_read_back_and_has_the_columns_of_the_catalogue() {
 }
 
 /// A diagnosis that found one effect on given joints.
-fn diagnosis(robot: &idim_codegen::Robot, effect: FoundEffect) -> Diagnosis {
+pub fn diagnosis(robot: &idim_codegen::Robot, effect: FoundEffect) -> Diagnosis {
     let estimated = |value: f64| Estimated { value, sigma: None };
     let refitted = |(place, parameter): (usize, &BaseParameter)| Refitted {
         name: parameter.name.clone(),

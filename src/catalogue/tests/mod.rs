@@ -12,3 +12,4 @@ mod described;
 mod formulas;
 mod listing;
 mod signals;
+mod whole;

@@ -47,7 +47,8 @@ pub fn find(folder: &Path, spinner: &Spinner) -> Result<Diagnosis, Failure> {
     let extension = catalogue
         .extension(&diagnosis)
         .map_err(write::not_extended)?;
-    motions(&model, &mut diagnosis, &extension, (validate, spinner));
+    let found = (&catalogue, &extension);
+    motions(&model, &mut diagnosis, found, (validate, spinner));
     let texts = Texts::of(robots::scara::NAME)?;
     write::write(&folder.join(WRITTEN), &texts, &diagnosis, &extension)?;
     Ok(diagnosis)
