@@ -86,9 +86,8 @@ impl Effects {
                     description.gravity = turned(description.gravity, value(0), value(1))
                 }
                 "link_length" => {
-                    let names = effect.joint.iter();
-                    let longer = names.filter_map(|name| changed(&description, name, value(0)));
-                    description = longer.last().unwrap_or(description);
+                    let joint = effect.joint.as_deref().unwrap_or_default();
+                    description = changed(&description, joint, value(0)).unwrap_or(description);
                 }
                 _ => {}
             }
