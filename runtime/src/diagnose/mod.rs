@@ -27,6 +27,7 @@ mod proof;
 mod repeats;
 mod rest;
 mod screen;
+mod smooth;
 mod state;
 mod stepwise;
 mod still;

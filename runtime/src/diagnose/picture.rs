@@ -26,11 +26,29 @@ const TIME_STEPS: usize = 6;
 const EXPLAINED: f64 = 0.75;
 
 /// A variable along the rows of some logs.
-struct Variable {
-    name: String,
-    unit: String,
-    values: Vec<f64>,
+pub(super) struct Variable {
+    pub name: String,
+    pub unit: String,
+    pub values: Vec<f64>,
     steps: usize,
+}
+
+impl Variable {
+    /// One of no unit.
+    #[cfg(test)]
+    pub fn new(name: &str, values: Vec<f64>) -> Variable {
+        Variable {
+            name: name.to_owned(),
+            unit: String::new(),
+            values,
+            steps: STEPS,
+        }
+    }
+
+    /// Whether a torque may jump where it changes its sign.
+    pub fn turns(&self) -> bool {
+        self.name.starts_with("velocity") || self.name.starts_with("load against")
+    }
 }
 
 /// What to draw: the places of the effects as they are listed, the joints that are not explained.
@@ -64,7 +82,7 @@ pub(super) fn pictures(
 }
 
 /// Measured minus predicted torque of each joint.
-fn residuals(bench: &Bench<'_>, state: &State, on: &Joined) -> Vec<Vec<f64>> {
+pub(super) fn residuals(bench: &Bench<'_>, state: &State, on: &Joined) -> Vec<Vec<f64>> {
     let mut rows = bench.rows(state, on);
     for (joint, predicted) in rows.iter_mut().enumerate() {
         let measured = on.measured(joint);
@@ -156,7 +174,12 @@ const KINDS: [(&str, &str); 7] = [
 ];
 
 /// The variables of a joint along the rows of logs.
-fn variables(bench: &Bench<'_>, state: &State, joint: usize, on: &Joined) -> Vec<Variable> {
+pub(super) fn variables(
+    bench: &Bench<'_>,
+    state: &State,
+    joint: usize,
+    on: &Joined,
+) -> Vec<Variable> {
     let predicted = bench.predicted(on, &state.parameters, &state.effects);
     let about = &bench.model.joints()[joint];
     let length = match about.kind {
@@ -307,7 +330,7 @@ fn first(on: &Joined) -> Option<(usize, Range<usize>)> {
     })
 }
 
-fn unit(bench: &Bench<'_>, joint: usize) -> &'static str {
+pub(super) fn unit(bench: &Bench<'_>, joint: usize) -> &'static str {
     match bench.model.joints()[joint].kind {
         JointKind::Revolute => "N m",
         JointKind::Prismatic => "N",

@@ -7,6 +7,7 @@ use super::catalogue::Hypothesis;
 use super::joined::Joined;
 use super::null::Null;
 use super::picture::{self, Drawn};
+use super::smooth::smooths;
 use super::state::{Bench, Effect, State};
 use super::stepwise::{Named, Outcome};
 use super::{Log, doubts, proof, verdict};
@@ -74,6 +75,7 @@ pub(super) fn diagnosis(
         ranking: ranking(bench, outcome),
         rejected: rejected(bench, before, outcome),
         located: located.collect(),
+        smooths: smooths(bench, &outcome.state, &lacking, proof),
         gap: Gap {
             torque: Change {
                 before: proof::fit(bench, before, on),

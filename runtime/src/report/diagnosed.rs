@@ -18,6 +18,7 @@ pub fn diagnosed(diagnosis: &Diagnosis) -> String {
         text.push_str(&named(effect));
     }
     located(&mut text, diagnosis);
+    smooths(&mut text, diagnosis);
     gap(&mut text, diagnosis);
     if !diagnosis.rejected.is_empty() {
         text.push_str("\nlooked at and not taken\n");
@@ -128,6 +129,31 @@ fn located(text: &mut String, diagnosis: &Diagnosis) {
             "  {}: {} % of the residual is no noise{with}",
             joint.joint,
             significant(joint.unexplained_pct, 2)
+        );
+    }
+}
+
+/// What has no name, in a line each.
+fn smooths(text: &mut String, diagnosis: &Diagnosis) {
+    if !diagnosis.smooths.is_empty() {
+        text.push_str("\nwhat it looks like\n");
+    }
+    for smooth in &diagnosis.smooths {
+        let [one, other] = &smooth.variables;
+        let proven = smooth.proven_pct.map_or(String::new(), |share| {
+            format!(", {} % on data that were not used", significant(share, 2))
+        });
+        let _ = writeln!(
+            text,
+            "  {}: a smooth function of {} and {} explains {} % of what is left{proven} \
+             (rms {} -> {} {})",
+            smooth.joint,
+            one.name,
+            other.name,
+            significant(smooth.explained_pct, 2),
+            significant(smooth.rmse.before, 3),
+            significant(smooth.rmse.after, 3),
+            smooth.unit
         );
     }
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::{Changed, Fit, Pictures};
+use super::{Changed, Fit, Pictures, Smooth};
 use crate::observe::Filtering;
 
 /// What a diagnosis comes to.
@@ -42,6 +42,10 @@ pub struct Diagnosis {
     /// The joints whose torque the model without them does not explain.
     #[serde(rename = "where")]
     pub located: Vec<Located>,
+    /// What the torque looks like that no effect explains, joint by joint; absent where there is
+    /// none.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub smooths: Vec<Smooth>,
     /// The gap before and after.
     pub gap: Gap,
     /// The parameters of the model, fitted without and with the effects.

@@ -14,6 +14,7 @@ mod payload;
 mod pictures;
 mod prior;
 mod series;
+mod smooth;
 mod table;
 mod terminal;
 mod thin;
@@ -33,5 +34,7 @@ pub use identification::{
 pub use payload::{LoadParameter, Payload, Physical, terminal as payload_terminal};
 pub use pictures::{GapCurves, Pictures, Signature};
 pub use series::{JointSeries, LogSeries, ModelSeries, Role, Spectrum};
+pub(crate) use smooth::hats;
+pub use smooth::{Smooth, SmoothVariable};
 pub use terminal::terminal;
 pub(crate) use thin::thinned;

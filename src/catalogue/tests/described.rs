@@ -91,6 +91,7 @@ pub fn diagnosis(robot: &idim_codegen::Robot, effect: FoundEffect) -> Diagnosis 
         effects: vec![effect],
         rejected: Vec::new(),
         located: Vec::new(),
+        smooths: Vec::new(),
         gap: Gap {
             torque: Change {
                 before: fit(),

@@ -3,8 +3,8 @@
 use super::super::figure;
 use super::super::markup::{Element, classed, el};
 use super::super::words::{number, percent, plus_minus, unit};
-use super::signature;
 use super::verdict::name;
+use super::{map, signature};
 use crate::report::{Alternative, Diagnosis, FoundEffect, place};
 
 /// A fall of the torque error, percent, that is hardly one.
@@ -19,7 +19,8 @@ pub(super) fn sections(diagnosis: &Diagnosis) -> Vec<Element> {
         section.children(effects)
     });
     let drawn = signature::unnamed(diagnosis);
-    let left = (!drawn.is_empty()).then(|| {
+    let maps = map::maps(diagnosis);
+    let left = (!drawn.is_empty() || !maps.is_empty()).then(|| {
         let title = match found.is_some() {
             true => "What is left without a name",
             false => "What it looks like",
@@ -27,9 +28,15 @@ pub(super) fn sections(diagnosis: &Diagnosis) -> Vec<Element> {
         let caption = "Measured minus predicted torque on data that were not used to fit, over the \
                        variable that explains most of it; line: its mean.";
         let grid = classed("div", "grid2").children(drawn);
+        let maps = (!maps.is_empty()).then(|| {
+            let caption = "The same as a smooth function of the two variables that explain most of \
+                           it; blank where the logs were not.";
+            figure([classed("div", "grid2").children(maps)], caption)
+        });
         el("section")
             .child(el("h2").text(title))
             .child(figure([grid], caption))
+            .children(maps)
     });
     found.into_iter().chain(left).collect()
 }

@@ -4,6 +4,7 @@
 mod curves;
 mod evidence;
 mod found;
+mod map;
 mod shifts;
 mod signature;
 #[cfg(test)]

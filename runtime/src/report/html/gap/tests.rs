@@ -127,6 +127,7 @@ fn diagnosed() -> Diagnosis {
             joints: vec![2],
             why: "its stiffness is negative".into(),
         }],
+        smooths: Vec::new(),
         located: vec![Located {
             joint: "elbow".into(),
             unexplained_pct: 93.0,
