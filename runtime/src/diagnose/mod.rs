@@ -230,7 +230,8 @@ fn searched(
         .collect();
     let asked = Asked {
         logs: read.logs,
-        kept: read.kept,
+        // Known parameters without a change need no proof.
+        kept: read.kept || known.is_some() && outcome.named.is_empty(),
         filtering: &read.filtering,
         draw: read.draw,
     };

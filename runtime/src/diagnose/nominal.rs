@@ -13,11 +13,11 @@ use super::state::State;
 use super::system::Sparse;
 use super::track::Track;
 use super::{Catalogue, DiagnoseError, Log, Options, Prediction, Searched, Tracked};
-use super::{ROWS_PER_PARAMETER, asked, first, searched};
+use super::{asked, first, searched};
 use crate::identify::{IdentifyError, Progress};
 use crate::model::IdentificationModel;
 use crate::observe::Filtering;
-use crate::report::{Changed, Diagnosis, Located, Verdict};
+use crate::report::{Changed, Diagnosis, Estimated, Located, Verdict};
 use crate::signal::central_difference;
 
 /// Information on a parameter that is known, SI: more than any log has.
@@ -158,7 +158,7 @@ pub fn changes(
     let filtering = filtering(model, (train, validate), options)?;
     let whole = Tracked::new(model, (train, validate), (filtering, options), progress)?;
     check_length(&whole)?;
-    let whole = keeping(model, whole);
+    let whole = keeping(whole);
     let looks = [
         contact::Look::new(model, &whole.train, nominal.values),
         contact::Look::new(model, &whole.other, nominal.values),
@@ -207,6 +207,10 @@ pub fn changes(
         (true, false) => Verdict::Named,
     };
     diagnosis.located = located;
+    for (parameter, &value) in diagnosis.parameters.iter_mut().zip(nominal.values) {
+        let known = Estimated { value, sigma: None };
+        (parameter.before, parameter.after) = (known, known);
+    }
     diagnosis.changed = Some(changed);
     if let Some(mass) = nominal.load_mass {
         scale(&mut diagnosis, mass);
@@ -322,9 +326,8 @@ fn filtering(
 }
 
 /// Without logs of other motions, the second half of the only ones confirms and proves.
-fn keeping<'a>(model: &dyn IdentificationModel, mut whole: Tracked<'a>) -> Tracked<'a> {
-    let long = whole.train.rows() >= 2 * ROWS_PER_PARAMETER * model.columns().len();
-    if long && whole.logs.1.is_empty() {
+fn keeping(mut whole: Tracked<'_>) -> Tracked<'_> {
+    if whole.train.rows() >= 4 * MOVING && whole.logs.1.is_empty() {
         whole.other = whole.train.clone();
         whole.kept = true;
     }

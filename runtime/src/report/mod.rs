@@ -3,7 +3,7 @@
 //! [`Identification`] is all that is said about an identification: its JSON is the machine
 //! readable report, and [`terminal()`] and [`html()`] render nothing but this value.
 
-mod changed;
+pub(crate) mod changed;
 mod diagnosed;
 mod diagnosis;
 mod gains;

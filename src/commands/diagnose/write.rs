@@ -213,7 +213,7 @@ fn parameters(
         let mut item = value(*found);
         if let Some(value) = item.as_value_mut() {
             let sigma = sigma(diagnosis, &column.name).map_or_else(
-                || "not determined".to_owned(),
+                || without_sigma(diagnosis, &column.name, *found).to_owned(),
                 |sigma| format!("+- {sigma:.2e}"),
             );
             value
@@ -226,7 +226,18 @@ fn parameters(
         true => "",
         false => " with what was found",
     };
-    let mut prefix = format!("{remarks}\n# Refitted{with}, on the same logs.\n");
+    let mut prefix = match &diagnosis.changed {
+        Some(changed) => format!(
+            "{remarks}\n# As known from {},{} has changed.\n",
+            changed.against.escape_debug(),
+            if changed.is_empty() {
+                " and nothing"
+            } else {
+                " with what"
+            }
+        ),
+        None => format!("{remarks}\n# Refitted{with}, on the same logs.\n"),
+    };
     if known {
         prefix += "# [prior] now stands about these values: leave it out where the same logs are \
                    used again.\n";
@@ -234,6 +245,17 @@ fn parameters(
     table.decor_mut().set_prefix(prefix);
     *own = Item::Table(table);
     Ok(())
+}
+
+/// What is said of a parameter without a sigma: where parameters are known, whether it is as it was.
+fn without_sigma(diagnosis: &Diagnosis, name: &str, found: f64) -> &'static str {
+    let mut own = diagnosis.parameters.iter().filter(|own| own.name == name);
+    let before = own.next().map_or(0.0, |own| own.before.value);
+    match diagnosis.changed.is_some() {
+        true if (found - before).abs() <= 1e-9 * before.abs() => "as known,",
+        true => "changed,",
+        false => "not determined",
+    }
 }
 
 fn sigma(diagnosis: &Diagnosis, name: &str) -> Option<f64> {

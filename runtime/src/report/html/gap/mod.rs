@@ -1,6 +1,7 @@
 //! A diagnosis as one self-contained page: what is missing, where, how sure that is, and how the
 //! gap shrinks.
 
+mod changed;
 mod curves;
 mod evidence;
 mod found;
@@ -24,12 +25,17 @@ pub fn diagnosis_html(diagnosis: &Diagnosis) -> String {
 
 /// Everything about a diagnosis.
 pub(super) fn sections(diagnosis: &Diagnosis) -> Vec<Element> {
-    let mut all = vec![verdict::header(diagnosis), first_screen(diagnosis)];
+    let mut all = vec![verdict::header(diagnosis)];
+    all.extend(changed::section(diagnosis));
+    // Known parameters predict nothing of joints at rest.
+    let at_rest = diagnosis.changed.is_some() && diagnosis.gap.torque.before.total_pct == 0.0;
+    all.extend((!at_rest).then(|| first_screen(diagnosis)));
     all.extend(found::sections(diagnosis));
     all.extend(curves::torque(diagnosis));
     all.extend(curves::motion(diagnosis));
     all.extend(evidence::section(diagnosis));
-    all.push(shifts::section(diagnosis));
+    // Known parameters do not shift.
+    all.extend((diagnosis.changed.is_none()).then(|| shifts::section(diagnosis)));
     all.push(provenance(diagnosis));
     all
 }
@@ -37,18 +43,14 @@ pub(super) fn sections(diagnosis: &Diagnosis) -> Vec<Element> {
 /// How large the gap is, and where.
 fn first_screen(diagnosis: &Diagnosis) -> Element {
     let (before, after) = (&diagnosis.gap.torque.before, &diagnosis.gap.torque.after);
+    let model = match diagnosis.changed {
+        Some(_) => "the known parameters",
+        None => "the model as it is described",
+    };
     let fits = match diagnosis.effects.is_empty() {
-        true => vec![(
-            "training",
-            "the model as it is described".to_owned(),
-            before,
-        )],
+        true => vec![("training", model.to_owned(), before)],
         false => vec![
-            (
-                "before",
-                "before: the model as it is described".to_owned(),
-                before,
-            ),
+            ("before", format!("before: {model}"), before),
             ("held", "after: with what was found".to_owned(), after),
         ],
     };
@@ -57,6 +59,9 @@ fn first_screen(diagnosis: &Diagnosis) -> Element {
          brackets in absolute terms, on {}. {}",
         verdict::on(diagnosis),
         match diagnosis.effects.is_empty() {
+            _ if diagnosis.changed.is_some() => {
+                "Orange: the known parameters; blue: with what has changed."
+            }
             true => "The parameters were refitted on the training logs.",
             false => {
                 "Orange: the model as it is described, its parameters refitted; blue: refitted \
@@ -90,10 +95,18 @@ fn place(diagnosis: &Diagnosis) -> Element {
     let groups: Vec<_> = diagnosis.located.iter().map(bar).collect();
     let axis = "share of the residual\u{2019}s variance that is no noise, %";
     let words = "What of the residual of each joint is no noise";
-    let caption = "Of the model as it is described, on the training logs; beside each bar what the \
-                   unexplained part varies with, the strongest first. Noise is what does not \
-                   repeat from one period of the motion to the next, or, where nothing repeats, \
-                   what a generic model of the joint leaves.";
+    let caption = match diagnosis.changed {
+        Some(_) => {
+            "With what has changed, on the logs that it was found on. Noise is what the same model \
+             leaves when all its parameters are free."
+        }
+        None => {
+            "Of the model as it is described, on the training logs; beside each bar what the \
+             unexplained part varies with, the strongest first. Noise is what does not \
+             repeat from one period of the motion to the next, or, where nothing repeats, \
+             what a generic model of the joint leaves."
+        }
+    };
     about.child(figure(
         [errors::grouped(&groups, errors::NAMES, axis, words)],
         caption,

@@ -2,7 +2,7 @@
 
 use super::super::markup::{Element, classed, el};
 use super::super::words::{count, list, number, percent};
-use crate::report::{Diagnosis, FoundEffect, Verdict, place as acting};
+use crate::report::{Changed, Diagnosis, FoundEffect, Verdict, changed, place as acting};
 
 /// A torque error that falls by less stays.
 const STAYS: f64 = 0.98;
@@ -13,6 +13,9 @@ const NAMES: usize = 6;
 /// Title of the page.
 pub(super) fn title(diagnosis: &Diagnosis) -> String {
     let robot = &diagnosis.robot;
+    if let Some(changed) = &diagnosis.changed {
+        return format!("{robot}: {}", changed::sentence(diagnosis, changed));
+    }
     match diagnosis.verdict {
         Verdict::Nothing => format!("{robot}: nothing is missing that these logs could show"),
         Verdict::Named => format!("{robot}: {}", names(diagnosis)),
@@ -48,9 +51,10 @@ pub(super) fn header(diagnosis: &Diagnosis) -> Element {
             .text(count(diagnosis.warnings.len(), "warning"));
         classed("span", "warned").text(" ").child(link)
     });
-    let confirmed = match diagnosis.validation.is_empty() {
-        true => "no log of another motion confirms it".to_owned(),
-        false => format!("confirmed and proven on {}", logs(&diagnosis.validation)),
+    let confirmed = match (&diagnosis.changed, diagnosis.validation.is_empty()) {
+        (Some(known), _) => format!("the parameters are known from {}", known.against),
+        (None, true) => "no log of another motion confirms it".to_owned(),
+        (None, false) => format!("confirmed and proven on {}", logs(&diagnosis.validation)),
     };
     let facts = format!("Fitted on {}; {confirmed}.", logs(&diagnosis.logs));
     el("header")
@@ -63,6 +67,9 @@ pub(super) fn header(diagnosis: &Diagnosis) -> Element {
 fn sentence(diagnosis: &Diagnosis) -> String {
     let before = percent(diagnosis.gap.torque.before.total_pct);
     let after = percent(diagnosis.gap.torque.after.total_pct);
+    if let Some(changed) = &diagnosis.changed {
+        return against(diagnosis, changed);
+    }
     match (diagnosis.verdict, diagnosis.effects.is_empty()) {
         (Verdict::Nothing, _) => format!(
             "The model explains these logs down to their noise; it leaves {before} of the torque."
@@ -76,6 +83,36 @@ fn sentence(diagnosis: &Diagnosis) -> String {
              take the name for a hint, not for the cause.",
             names(diagnosis)
         ),
+    }
+}
+
+/// What has changed against known parameters, and what that does to the torque error.
+fn against(diagnosis: &Diagnosis, known: &Changed) -> String {
+    let (before, after) = totals(diagnosis);
+    let falls = format!(
+        "With it the torque error falls from {} to {} on {}.",
+        percent(before),
+        percent(after),
+        on(diagnosis)
+    );
+    let contacts = match known.contacts.len() {
+        0 => String::new(),
+        n => format!(" Something touched the robot: {}.", count(n, "contact")),
+    };
+    match diagnosis.effects.is_empty() {
+        true if diagnosis.verdict == Verdict::Unknown => format!(
+            "The known parameters do not explain these logs, and none of the changes looked for \
+             does.{contacts}"
+        ),
+        true if before == 0.0 => {
+            format!("No joint moves enough for anything but contact to be looked for.{contacts}")
+        }
+        true => format!(
+            "The known parameters explain these logs as well as free ones; they leave {} of the \
+             torque.{contacts}",
+            percent(before)
+        ),
+        false => format!("Changed: {}. {falls}{contacts}", names(diagnosis)),
     }
 }
 
@@ -159,6 +196,11 @@ fn without_folders(name: &str) -> String {
 
 /// Where the gap is.
 pub(super) fn place(diagnosis: &Diagnosis) -> String {
+    if diagnosis.located.is_empty() && diagnosis.changed.is_some() {
+        return "At no joint is the torque error far above that of the same model with all its \
+                parameters free."
+            .to_owned();
+    }
     if diagnosis.located.is_empty() {
         let plain =
             "At no joint does the residual hold more than noise, so far as these logs can tell.";
