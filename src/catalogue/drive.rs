@@ -3,7 +3,7 @@
 use idim_runtime::diagnose::{Entry, EntryKind, Hypothesis, TorqueColumn};
 
 use super::along::Along;
-use super::reach::{largest, plain};
+use super::reach::{largest, plain, top};
 use super::{Effect, Effects, Reach};
 
 pub(super) static DRIVE_GAIN: Effect = Effect {
@@ -81,7 +81,7 @@ fn saturation(_: &Effects, reach: &Reach<'_>) -> Vec<Hypothesis> {
     reach.each_of(
         |joint| largest(&reach.signals.tau_model[joint]) > 0.0,
         |joint| {
-            let top = largest(&reach.signals.tau_model[joint]);
+            let top = top(&reach.signals.tau_model[joint]);
             LEVELS.iter().map(|fraction| fraction * top).collect()
         },
     )
@@ -116,7 +116,7 @@ pub(super) static DRIVE_DEAD_ZONE: Effect = Effect {
 
 /// The sign of a torque, smooth over 3 % of its largest value.
 pub(super) fn direction(torque: &[f64]) -> Vec<f64> {
-    let width = 0.03 * largest(torque);
+    let width = 0.03 * top(torque);
     let sign = |tau: &f64| match width > 0.0 {
         true => (tau / width).tanh(),
         false => 0.0,

@@ -67,6 +67,17 @@ pub(super) fn largest(series: &[f64]) -> f64 {
     series.iter().fold(0.0, |all: f64, x| all.max(x.abs()))
 }
 
+/// The absolute value that all but one in a thousand stay below: the largest, but for what filters
+/// ring at the ends of a log.
+pub(super) fn top(series: &[f64]) -> f64 {
+    let mut sizes: Vec<f64> = series.iter().map(|x| x.abs()).collect();
+    let beyond = sizes.len() / 1000;
+    let place = sizes.len().checked_sub(1 + beyond);
+    place.map_or(0.0, |place| {
+        *sizes.select_nth_unstable_by(place, f64::total_cmp).1
+    })
+}
+
 /// A hypothesis without shape.
 pub(super) fn plain(joints: Vec<usize>) -> Hypothesis {
     Hypothesis {

@@ -28,6 +28,7 @@ mod repeats;
 mod rest;
 mod screen;
 mod smooth;
+mod settled;
 mod state;
 mod stepwise;
 mod still;

@@ -99,7 +99,8 @@ impl Bench<'_> {
         numbers.par_iter().flat_map_iter(of_hypothesis).collect()
     }
 
-    fn candidates_at(
+    /// The same for given shapes of one.
+    pub fn candidates_at(
         &self,
         number: usize,
         shapes: &[Vec<f64>],
@@ -248,7 +249,7 @@ impl Bench<'_> {
 }
 
 /// Places of a shape that the grid varies.
-fn searched(grid: &[Vec<f64>]) -> Vec<usize> {
+pub(super) fn searched(grid: &[Vec<f64>]) -> Vec<usize> {
     let Some(first) = grid.first() else {
         return Vec::new();
     };
@@ -258,7 +259,11 @@ fn searched(grid: &[Vec<f64>]) -> Vec<usize> {
 
 /// The values of a shape's place around `value` on the grid; `None` for whole numbers, which are
 /// counts and sides.
-fn neighbours(hypothesis: &super::Hypothesis, place: usize, value: f64) -> Option<(f64, f64)> {
+pub(super) fn neighbours(
+    hypothesis: &super::Hypothesis,
+    place: usize,
+    value: f64,
+) -> Option<(f64, f64)> {
     let values = || hypothesis.grid.iter().map(|shape| shape[place]);
     if values().all(|value| value == value.round()) {
         return None;
@@ -291,16 +296,22 @@ fn neighbours(hypothesis: &super::Hypothesis, place: usize, value: f64) -> Optio
 }
 
 /// Golden-section search for the largest gain.
-fn golden(
+fn golden(ends: (f64, f64), at: impl Fn(f64) -> Option<Contender>) -> Option<Contender> {
+    largest(ends, at, |contender| contender.gain.square)
+}
+
+/// Golden-section search for what is worth most between two ends.
+pub(super) fn largest<T>(
     (mut low, mut high): (f64, f64),
-    at: impl Fn(f64) -> Option<Contender>,
-) -> Option<Contender> {
+    at: impl Fn(f64) -> Option<T>,
+    worth: impl Fn(&T) -> f64,
+) -> Option<T> {
     let ratio = 0.5 * (5.0_f64.sqrt() - 1.0);
     let mut left = high - ratio * (high - low);
     let mut right = low + ratio * (high - low);
     let (mut at_left, mut at_right) = (at(left)?, at(right)?);
     for _ in 0..EVALUATIONS {
-        if at_left.gain.square > at_right.gain.square {
+        if worth(&at_left) > worth(&at_right) {
             (high, right) = (right, left);
             left = high - ratio * (high - low);
             at_right = std::mem::replace(&mut at_left, at(left)?);
@@ -310,7 +321,7 @@ fn golden(
             at_left = std::mem::replace(&mut at_right, at(right)?);
         }
     }
-    Some(if at_left.gain.square > at_right.gain.square {
+    Some(if worth(&at_left) > worth(&at_right) {
         at_left
     } else {
         at_right

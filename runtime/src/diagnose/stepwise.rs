@@ -179,6 +179,9 @@ impl<'a> Stepwise<'a> {
             }
         }
         for place in 0..plausible.len() {
+            if let Some(settled) = self.settled(&plausible[place].candidate, state, named) {
+                plausible[place] = settled;
+            }
             let next = match self.confirmed(&plausible[place], state, named) {
                 Ok(next) => next,
                 Err(why) => {
