@@ -10,6 +10,7 @@ use rayon::prelude::*;
 
 use super::joined::Joined;
 use super::picture::{Variable, residuals, unit, variables};
+use super::repeats::find;
 use super::state::{Bench, State};
 use crate::report::{Change, Smooth, SmoothVariable, hats};
 
@@ -43,11 +44,12 @@ pub(super) fn smooths(
     proof: Option<&Joined>,
 ) -> Vec<Smooth> {
     let train = residuals(bench, state, bench.train);
+    let blocks = blocks(bench.train);
     let proof = proof.map(|on| (on, residuals(bench, state, on)));
     let of_joint = |&joint: &usize| {
         let along = variables(bench, state, joint, bench.train);
         let weights = &bench.train.weights[joint];
-        let (places, fitted) = best(&along, &train[joint], weights)?;
+        let (places, fitted) = best(&along, &train[joint], (weights, &blocks))?;
         let grids = places.map(|k| grid(&along[k]));
         let smooth = Smooth {
             joint: bench.model.joints()[joint].name.to_string(),
@@ -77,7 +79,21 @@ pub(super) fn smooths(
             }
         })
     };
-    joints.iter().filter_map(of_joint).collect()
+    let all = joints.iter().filter_map(of_joint);
+    // A shape that another motion contradicts is none.
+    all.filter(|smooth| smooth.proven_pct.is_none_or(|share| share > 0.0))
+        .collect()
+}
+
+/// The block of each row: a stretch of its log, or of every period of a log that repeats itself.
+fn blocks(joined: &Joined) -> Vec<usize> {
+    let mut all = Vec::with_capacity(joined.rows());
+    for (track, segment) in joined.tracks.iter().zip(&joined.segments) {
+        let repeats = find(track, segment.clone());
+        let period = repeats.map_or(segment.len(), |repeats| repeats.period);
+        all.extend((0..segment.len()).map(|k| k % period * BLOCKS / period));
+    }
+    all
 }
 
 /// With what is left along rows, without and with it.
@@ -110,11 +126,18 @@ struct Fitted {
 
 /// The two variables that explain most of a torque on blocks that were left out, earlier ones
 /// first.
-fn best(along: &[Variable], y: &[f64], weights: &[f64]) -> Option<([usize; 2], Fitted)> {
+fn best(
+    along: &[Variable],
+    y: &[f64],
+    (weights, blocks): (&[f64], &[usize]),
+) -> Option<([usize; 2], Fitted)> {
     let pairs: Vec<[usize; 2]> = (0..along.len())
         .flat_map(|i| (i + 1..along.len()).map(move |k| [i, k]))
         .collect();
-    let fit = |pair: &[usize; 2]| Some((*pair, fit(pair.map(|k| &along[k]), y, weights)?));
+    let fit = |pair: &[usize; 2]| {
+        let fitted = fit(pair.map(|k| &along[k]), y, (weights, blocks))?;
+        Some((*pair, fitted))
+    };
     let all: Vec<([usize; 2], Fitted)> = pairs.par_iter().filter_map(fit).collect();
     let better = |best: Option<([usize; 2], Fitted)>, next: ([usize; 2], Fitted)| match best {
         Some(best) if next.1.share <= best.1.share + CLEARLY => Some(best),
@@ -167,7 +190,11 @@ impl Sums {
 type Row = [(usize, f64); 4];
 
 /// Fits a spline of two variables; `None` where nothing varies.
-fn fit(along: [&Variable; 2], y: &[f64], weights: &[f64]) -> Option<Fitted> {
+fn fit(
+    along: [&Variable; 2],
+    y: &[f64],
+    (weights, block_of): (&[f64], &[usize]),
+) -> Option<Fitted> {
     let grids = along.map(grid);
     let [m, n] = grids.each_ref().map(Vec::len);
     if m < 3 || n < 3 {
@@ -178,7 +205,7 @@ fn fit(along: [&Variable; 2], y: &[f64], weights: &[f64]) -> Option<Fitted> {
         .iter()
         .map(|&t| row(&grids, [along[0].values[t], along[1].values[t]]))
         .collect();
-    let block = |k: usize| k * BLOCKS / counted.len().max(1);
+    let block = |k: usize| block_of[counted[k]];
     let mut blocks = vec![Sums::none(m * n); BLOCKS];
     for (k, row) in rows.iter().enumerate() {
         let (sums, t) = (&mut blocks[block(k)], counted[k]);
@@ -319,6 +346,12 @@ mod tests {
         ]
     }
 
+    static ONES: [f64; 2400] = [1.0; 2400];
+
+    fn stretches() -> Vec<usize> {
+        (0..2400).map(|k| k * BLOCKS / 2400).collect()
+    }
+
     fn noise(len: usize) -> Vec<f64> {
         let mut state = 7_u64;
         let mut next = || {
@@ -341,14 +374,14 @@ mod tests {
         // Noise of a hundredth of the variance.
         let size = 0.1 * (1.2_f64 * 12.0).sqrt();
         let y: Vec<f64> = (0..2400).map(|t| torque(t) + size * noise[t]).collect();
-        let (pair, fitted) = best(&along, &y, &vec![1.0; 2400]).unwrap();
+        let (pair, fitted) = best(&along, &y, (&ONES, &stretches())).unwrap();
         assert_eq!(pair, [0, 1]);
         assert!((0.95..1.0).contains(&fitted.share), "{}", fitted.share);
     }
 
     #[test]
     fn noise_is_no_picture() {
-        assert!(best(&swing(), &noise(2400), &vec![1.0; 2400]).is_none());
+        assert!(best(&swing(), &noise(2400), (&ONES, &stretches())).is_none());
     }
 
     #[test]
@@ -357,10 +390,15 @@ mod tests {
         let y: Vec<f64> = (0..2400)
             .map(|t| 2.0 * along[0].values[t] - along[1].values[t])
             .collect();
-        let fitted = fit([&along[0], &along[1]], &y, &vec![1.0; 2400]).unwrap();
+        let fitted = fit([&along[0], &along[1]], &y, (&ONES, &stretches())).unwrap();
         assert!(fitted.share > 0.999, "{}", fitted.share);
         let grids = [grid(&along[0]), grid(&along[1])];
-        let torque = known(&fitted, &grids, [&along[0], &along[1]], &vec![1.0; 2400]);
+        let torque = known(
+            &fitted,
+            &grids,
+            [&along[0], &along[1]],
+            &ONES,
+        );
         for (qd, row) in grids[0].iter().zip(&torque) {
             for (q, torque) in grids[1].iter().zip(row) {
                 let away = torque.map_or(0.0, |torque| torque - (2.0 * qd - q));
