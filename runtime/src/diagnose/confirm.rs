@@ -11,9 +11,14 @@ use super::stepwise::{Named, Stepwise};
 /// Share of the gain that the columns promise on another motion which must be there.
 const CONFIRMED: f64 = 1.0 / 3.0;
 
-/// Standard deviations of that gain's own noise, which is twice the root of the promise, times two:
+/// Times the root of the promise that a gain may be short: two and a half standard deviations of its
+/// own noise, which is twice that root;
 /// what a promise is too small to decide, the training log decides.
-const DOUBT: f64 = 3.0;
+const DOUBT: f64 = 5.0;
+
+/// Standard deviations by which a column that the noise of its motion swamps must still go along with
+/// what is left on another motion.
+const GOES_ALONG: f64 = 2.5;
 
 /// By how much an effect may raise the plain torque error on another motion, as a factor: what
 /// only noise decides.
@@ -77,9 +82,13 @@ fn kept(
 }
 
 /// A resonance makes much of the noise of a measured motion, which no simulation without it can
-/// stand in for: the share of such a column that is none, as far as it may be little.
+/// stand in for: the share of such a column that is none, where it goes along with what is left.
 fn attenuation(along: f64, square: f64) -> f64 {
-    (along / square.max(f64::MIN_POSITIVE)).clamp(CONFIRMED, 1.0)
+    let share = along / square.max(f64::MIN_POSITIVE);
+    match along > GOES_ALONG * square.sqrt() {
+        true => share.min(1.0),
+        false => share.clamp(CONFIRMED, 1.0),
+    }
 }
 
 /// Rows a share of the way from some to others.
