@@ -87,7 +87,7 @@ impl Robot {
         let mut graph = Graph::new();
         let standard = derive::standard(&mut graph, &mechanism);
         let (ends, standard) = (standard.ends, standard.parameters);
-        let base = base::parameters(&mut graph, &mechanism, standard, &description.scaled)?;
+        let base = base::parameters(&mut graph, &mechanism, standard, &description)?;
         Ok(Robot {
             description,
             mechanism,

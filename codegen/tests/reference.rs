@@ -7,104 +7,15 @@
     reason = "a test fails by panicking"
 )]
 
+mod robots;
+
 use std::collections::HashMap;
-use std::path::PathBuf;
 
 use idim_codegen::catalogue::EffectKind;
-use idim_codegen::describe::{
-    Description, EffectSpec, Geometry, Limits, MdhRow, Motion, Quantity, Span,
-};
 use idim_codegen::expr::tape::{Batch, Tape};
 use idim_codegen::robot::{Output, Robot};
+use robots::{description, gravity, reference};
 use serde_json::Value;
-
-fn reference(name: &str) -> Option<Value> {
-    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR"))
-        .join("../../shared/reference/generators")
-        .join(name);
-    match std::fs::read_to_string(&path) {
-        Ok(text) => Some(serde_json::from_str(&text).unwrap()),
-        Err(error) => {
-            println!("skipped: {name} is not beside this checkout ({error})");
-            None
-        }
-    }
-}
-
-/// The serial robots of the geometry file with gravity along `gravity`.
-fn description(
-    name: &str,
-    robot: &Value,
-    gravity: [f64; 3],
-    effects: &[EffectKind],
-) -> Description {
-    let lengths = &robot["numeric"];
-    let number = |value: &Value| -> Quantity {
-        let text = value.as_str().unwrap().to_owned();
-        let value = match text.as_str() {
-            "pi/2" => std::f64::consts::FRAC_PI_2,
-            "-pi/2" => -std::f64::consts::FRAC_PI_2,
-            text if text.starts_with("th") => 0.0,
-            text => text.parse().ok().or(lengths[text].as_f64()).unwrap_or(0.0),
-        };
-        Quantity { value, text }
-    };
-    let rows: Vec<MdhRow> = robot["frames"]
-        .as_array()
-        .unwrap()
-        .iter()
-        .map(|frame| MdhRow {
-            name: format!("joint{}", frame["j"]),
-            motion: if frame["sigma"] == 1 {
-                Motion::Prismatic
-            } else {
-                Motion::Revolute
-            },
-            ant: frame["ant"].as_u64().unwrap() as usize,
-            gamma: number(&frame["gamma"]),
-            b: number(&frame["b"]),
-            alpha: number(&frame["alpha"]),
-            d: number(&frame["d"]),
-            theta: number(&frame["theta"]),
-            r: number(&frame["r"]),
-            limits: Limits::default(),
-            span: Span::default(),
-        })
-        .collect();
-    let effects = rows
-        .iter()
-        .flat_map(|row| {
-            effects.iter().map(|&kind| EffectSpec {
-                kind,
-                joints: vec![row.name.clone()],
-                shape: vec![],
-                span: Span::default(),
-            })
-        })
-        .collect();
-    Description {
-        name: name.to_lowercase(),
-        hash: String::new(),
-        gravity,
-        lengths: vec![],
-        geometry: Geometry::Mdh(rows),
-        effects,
-        scaled: vec![],
-        identify: Default::default(),
-        drives: Default::default(),
-        parameters: vec![],
-        prior: None,
-        warnings: vec![],
-        snaps: vec![],
-    }
-}
-
-fn gravity(robot: &Value) -> [f64; 3] {
-    match robot["gravity"][2].as_str() {
-        Some("G3") => [0.0, 0.0, -9.81],
-        _ => [0.0; 3],
-    }
-}
 
 /// The name of the independent standard parameter of each base parameter.
 fn kept(robot: &Robot) -> Vec<String> {
@@ -194,6 +105,92 @@ fn regrouping_relations_are_those_of_the_reference() {
             relations.len(),
             "{name}: relations beyond the reference's"
         );
+    }
+}
+
+/// The relations of OpenSYMORO are nested (`XXR3` stands for `MR4` among others): both are
+/// evaluated for other lengths than the robot's, so that what is compared are the laws.
+#[test]
+fn regrouping_relations_by_name_are_those_of_opensymoro() {
+    let (Some(geometry), Some(base)) = (
+        reference("mdh_geometry.json"),
+        reference("base_parameters.json"),
+    ) else {
+        return;
+    };
+    let mut seen = 0;
+    for (name, expected) in base["robots"].as_object().unwrap() {
+        let Some(symbolic) = expected["symbolic_regroup_opensymoro"].as_object() else {
+            continue;
+        };
+        let source = &geometry["robots"][name];
+        let robot = Robot::new(description(name, source, gravity(source), &[])).unwrap();
+        // Panda's offsets at the elbow cancel: D5 is -D4 there, and has to stay that.
+        let equal = match name.as_str() {
+            "Panda" => HashMap::from([("D5", "-D4")]),
+            _ => HashMap::new(),
+        };
+        let mut laws = equal.clone();
+        for text in [
+            symbolic,
+            expected["symbolic_aux_opensymoro"].as_object().unwrap(),
+        ] {
+            let entries = text.iter();
+            laws.extend(entries.map(|(name, law)| (name.as_str(), law.as_str().unwrap())));
+        }
+        for parameter in &robot.base.parameters {
+            let Some(law) = laws.get(parameter.name.as_str()) else {
+                continue;
+            };
+            let own = law_value(&parameter.text, &equal);
+            let theirs = law_value(law, &laws);
+            assert!(
+                (own - theirs).abs() <= 1e-12 * theirs.abs().max(1.0),
+                "{name} {}: {} instead of {law}",
+                parameter.name,
+                parameter.text
+            );
+            seen += 1;
+        }
+    }
+    assert!(seen > 100, "{seen} relations compared");
+}
+
+/// A sum of products, possibly in parentheses and with whole powers; a name without a law of its
+/// own has a number that follows from its letters, rotor inertias (not in our rigid models) none.
+fn law_value(text: &str, laws: &HashMap<&str, &str>) -> f64 {
+    let text = text.replace("**", "^").replace(' ', "");
+    let mut depth = 0;
+    for operators in ["+-", "*", "^"] {
+        for (at, c) in text.char_indices().rev() {
+            depth += i32::from(c == ')') - i32::from(c == '(');
+            if depth == 0 && operators.contains(c) {
+                let (left, right) = (&text[..at], law_value(&text[at + 1..], laws));
+                let left = match left {
+                    "" => 0.0,
+                    left => law_value(left, laws),
+                };
+                return match c {
+                    '+' => left + right,
+                    '-' => left - right,
+                    '*' => left * right,
+                    _ => left.powf(right),
+                };
+            }
+        }
+    }
+    if let Some(inner) = text.strip_prefix('(') {
+        return law_value(inner.strip_suffix(')').unwrap(), laws);
+    }
+    if let Ok(number) = text.parse() {
+        return number;
+    }
+    match laws.get(text.as_str()) {
+        Some(law) => law_value(law, laws),
+        None if text.starts_with("IA") => 0.0,
+        None => text
+            .bytes()
+            .fold(0.3, |x: f64, byte| (7.1 * x + f64::from(byte)).sin() + 1.5),
     }
 }
 

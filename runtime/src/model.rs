@@ -61,7 +61,7 @@ pub struct Column {
     pub kind: ColumnKind,
     /// One line in words.
     pub meaning: Cow<'static, str>,
-    /// The standard parameters it stands for, such as `ZZ1 + IA1 + 0.25*M2`.
+    /// The standard parameters it stands for, such as `ZZ1 + IA1 + L^2*M2`.
     pub relation: Cow<'static, str>,
 }
 

@@ -4,14 +4,17 @@
 //! of others is regrouped into them: X_b = X + sum of coefficients times the regrouped parameters
 //! (Gautier 1991, "Numerical calculation of the base inertial parameters").
 
+pub mod lengths;
 pub mod names;
 pub mod rank;
 pub mod regroup;
+pub mod relation;
 pub mod sample;
 pub mod scale;
+pub mod symbolic;
 
 use crate::derive::{Columns, ParameterKind, Standard};
-use crate::describe::ScaledParameter;
+use crate::describe::Description;
 use crate::expr::Graph;
 use crate::mechanism::Mechanism;
 
@@ -30,14 +33,16 @@ pub struct BaseParameter {
     pub kind: ParameterKind,
     /// Standard parameters with their coefficients, the independent one first.
     pub relation: Vec<(f64, String)>,
+    /// The relation as text, with the lengths by name where they explain a coefficient.
+    pub text: String,
     /// Columns of D, P, R, h, dh.
     pub columns: Columns,
 }
 
 impl BaseParameter {
-    /// The relation as text, such as `ZZ1 + IA1 + 0.25*M2`.
+    /// The relation as text, such as `ZZ1 + IA1 + L^2*M2`.
     pub fn relation_text(&self) -> String {
-        names::relation(&self.relation)
+        self.text.clone()
     }
 }
 
@@ -92,17 +97,18 @@ pub fn parameters(
     graph: &mut Graph,
     mechanism: &Mechanism,
     standard: Vec<Standard>,
-    scaled: &[ScaledParameter],
+    description: &Description,
 ) -> Result<BaseParameters, BaseError> {
     let samples = sample::explicit(graph, mechanism, &standard);
     let priority = names::priority(mechanism, &standard);
     let split = rank::split(&samples, &priority, &standard)?;
-    let count = standard.len();
+    let names: Vec<String> = standard.iter().map(|p| p.name.clone()).collect();
     let mut parameters = regroup::regroup(&samples, &split, standard);
-    scale::apply(graph, &mut parameters, scaled)?;
+    scale::apply(graph, &mut parameters, &description.scaled)?;
+    relation::write(&mut parameters, mechanism, description, &split, &names);
     Ok(BaseParameters {
         parameters,
-        standard: count,
+        standard: names.len(),
         gap: split.gap,
     })
 }

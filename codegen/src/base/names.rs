@@ -45,24 +45,40 @@ pub fn base(name: &str, regrouped: bool) -> String {
     format!("{symbol}R{digits}")
 }
 
-/// A relation as text: `ZZ1 + IA1 + 0.25*M2`.
-pub fn relation(terms: &[(f64, String)]) -> String {
+/// A term of a relation: whether it is subtracted, its coefficient without the sign (empty for
+/// 1), and the parameter.
+pub type Term<'a> = (bool, String, &'a str);
+
+/// A relation as text: `ZZ1 + IA1 + L^2*(M2 + M3)`.
+pub fn relation(terms: &[Term<'_>]) -> String {
     let mut text = String::new();
-    for (index, (coefficient, name)) in terms.iter().enumerate() {
-        let sign = match (index, *coefficient < 0.0) {
+    let same = |a: &Term<'_>, b: &Term<'_>| !a.1.is_empty() && (a.0, &a.1) == (b.0, &b.1);
+    for (index, group) in terms.chunk_by(same).enumerate() {
+        let (negative, coefficient, first) = &group[0];
+        text.push_str(match (index, negative) {
             (0, false) => "",
             (0, true) => "-",
             (_, false) => " + ",
             (_, true) => " - ",
-        };
-        text.push_str(sign);
-        let size = coefficient.abs();
-        if size != 1.0 {
-            text.push_str(&format!("{size}*"));
-        }
-        text.push_str(name);
+        });
+        let names: Vec<&str> = group.iter().map(|&(_, _, name)| name).collect();
+        text.push_str(&match (coefficient.as_str(), names.len()) {
+            ("", _) => (*first).to_owned(),
+            (_, 1) => format!("{coefficient}*{first}"),
+            _ => format!("{coefficient}*({})", names.join(" + ")),
+        });
     }
     text
+}
+
+/// A coefficient as a number: whether it is negative, and its size (empty for 1).
+pub fn number(coefficient: f64) -> (bool, String) {
+    let size = coefficient.abs();
+    let text = match size == 1.0 {
+        true => String::new(),
+        false => size.to_string(),
+    };
+    (coefficient < 0.0, text)
 }
 
 #[cfg(test)]
@@ -78,11 +94,12 @@ mod tests {
 
     #[test]
     fn relations_read_like_sums() {
-        let terms = [
-            (1.0, "ZZ1".into()),
-            (1.0, "IA1".into()),
-            (-0.25, "M2".into()),
-        ];
-        assert_eq!(relation(&terms), "ZZ1 + IA1 - 0.25*M2");
+        let terms = [(1.0, "ZZ1"), (1.0, "IA1"), (-0.25, "M2"), (-0.25, "M3")];
+        let terms = terms.map(|(coefficient, name)| {
+            let (negative, text) = number(coefficient);
+            (negative, text, name)
+        });
+        assert_eq!(relation(&terms), "ZZ1 + IA1 - 0.25*(M2 + M3)");
+        assert_eq!(relation(&terms[..3]), "ZZ1 + IA1 - 0.25*M2");
     }
 }

@@ -42,6 +42,7 @@ pub fn regroup(w: &DMatrix<f64>, split: &Split, standard: Vec<Standard>) -> Vec<
                 link: parameter.link,
                 kind: parameter.kind,
                 relation,
+                text: String::new(),
                 columns: parameter.columns.clone(),
             }
         })
@@ -49,7 +50,7 @@ pub fn regroup(w: &DMatrix<f64>, split: &Split, standard: Vec<Standard>) -> Vec<
 }
 
 /// W_dependent = W_kept C by least squares, cleaned of rounding.
-fn coefficients(w: &DMatrix<f64>, split: &Split) -> DMatrix<f64> {
+pub fn coefficients(w: &DMatrix<f64>, split: &Split) -> DMatrix<f64> {
     let kept = w.select_columns(&split.kept);
     let dependent = w.select_columns(&split.dependent);
     let qr = kept.qr();

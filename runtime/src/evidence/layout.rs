@@ -19,8 +19,8 @@ pub struct Layout {
     pub parameters: usize,
     /// The columns that each joint can see, ascending; a single entry for the power model.
     pub joints: Vec<Vec<usize>>,
-    /// Of the parameters' names, units and regrouping relations: robots of the same name and
-    /// other dimensions differ in it.
+    /// Of the parameters' names, units and regrouping relations, as text and in numbers: robots of
+    /// the same name and other dimensions differ in it.
     pub fingerprint: u64,
 }
 
@@ -134,6 +134,10 @@ fn fingerprint(model: &dyn IdentificationModel) -> u64 {
             sum.add(text.as_bytes());
             sum.add(&[0]);
         }
+    }
+    // Relations speak of lengths by name: what these are is in the factors.
+    for term in &*model.knowledge().terms {
+        sum.add(&term.factor.to_le_bytes());
     }
     sum.value()
 }
