@@ -253,7 +253,7 @@ pub(super) static LINK_LENGTH: Effect = Effect {
     },
     described: &[],
     implausible: |values| {
-        let far = values.first().is_some_and(|length| length.abs() > 0.1);
-        far.then_some("a link that is wrong by more than 0.1 m would have been seen")
+        let far = values.first().is_some_and(|length| length.abs() > 0.03);
+        far.then_some("a length that is wrong by more than 3 cm would have been seen")
     },
 };

@@ -24,6 +24,10 @@ const GOES_ALONG: f64 = 2.5;
 /// only noise decides.
 const WORSE: f64 = 1.005;
 
+/// The same of an effect that parameters can hide: it moves them all by what is known of them, which
+/// a short log's own error follows only roughly.
+const HIDDEN_WORSE: f64 = 1.05;
+
 /// Standard deviations that some parameter of a change must be from zero.
 const CLEAR: f64 = 3.0;
 
@@ -66,6 +70,7 @@ fn kept(
     joints: &[usize],
     (before, after): (&[Vec<f64>], &[Vec<f64>]),
     (along, promised): (f64, f64),
+    worst: f64,
 ) -> Result<(), Broken> {
     let gained = 2.0 * along - promised;
     if gained < CONFIRMED * promised - DOUBT * promised.sqrt() {
@@ -76,7 +81,7 @@ fn kept(
         joints.iter().map(of_joint).sum::<f64>().sqrt()
     };
     match error(after) / error(before) {
-        factor if factor > WORSE => Err(Broken::Worse(factor)),
+        factor if factor > worst => Err(Broken::Worse(factor)),
         _ => Ok(()),
     }
 }
@@ -128,6 +133,11 @@ impl Stepwise<'_> {
         let joints = contender.candidate.columns.iter();
         let joints: Vec<usize> = joints.flat_map(|c| c.0.iter().map(|p| p.0)).collect();
         let before = self.bench.rows(state, confirm);
+        let entry = self.bench.hypotheses[contender.candidate.number].entry;
+        let worst = match self.bench.catalogue.entries()[entry].hidden_by_parameters {
+            true => HIDDEN_WORSE,
+            false => WORSE,
+        };
         let swings = self.bench.kind(contender.candidate.number) == EntryKind::Yielding;
         let kept = |after: &[Vec<f64>]| -> Result<(), Broken> {
             let (along, square) = self.bench.difference(confirm, (&before, after));
@@ -138,7 +148,7 @@ impl Stepwise<'_> {
             };
             let after = between(&before, after, share);
             let change = (share * along, share * share * square);
-            kept(confirm, &joints, (&before, &after), change)
+            kept(confirm, &joints, (&before, &after), change, worst)
         };
         // Along the measured motion, or, where its noise drowns the columns, along one without.
         let after = self.bench.rows(&next, confirm);

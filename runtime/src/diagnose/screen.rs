@@ -8,8 +8,16 @@ use super::state::{Asking, Bench, State};
 use super::system::{Gain, Sparse, System};
 use super::track::Decimated;
 
-/// What every degree of freedom costs.
-pub(super) const PENALTY: f64 = 10.0;
+/// What each of the first degrees of freedom costs, how many those are, and what each further one
+/// costs: of ten parameters of a body most follow from its mass and where it is, and what chance
+/// gains with ten columns is far less than ten times what it gains with one.
+const PENALTY: f64 = 10.0;
+const FIRST: usize = 4;
+const FURTHER: f64 = 3.0;
+
+fn penalty(freedom: usize) -> f64 {
+    PENALTY * freedom.min(FIRST) as f64 + FURTHER * freedom.saturating_sub(FIRST) as f64
+}
 
 /// Gain beyond the penalty that static, friction-like effects never reach by chance, and that
 /// others never reach, which the loop can imitate (reference: simulation of the null for a few
@@ -149,7 +157,7 @@ impl Bench<'_> {
             _ if entry.hidden_by_parameters => THROUGH_THE_LOOP,
             _ => PLAIN,
         };
-        let penalty = PENALTY * freedom as f64;
+        let penalty = penalty(freedom);
         let margin = gain.square - penalty - threshold;
         // Noise in the measured motion looks like a link that yields: some of the gain must be there
         // without it.

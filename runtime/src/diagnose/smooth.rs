@@ -393,12 +393,7 @@ mod tests {
         let fitted = fit([&along[0], &along[1]], &y, (&ONES, &stretches())).unwrap();
         assert!(fitted.share > 0.999, "{}", fitted.share);
         let grids = [grid(&along[0]), grid(&along[1])];
-        let torque = known(
-            &fitted,
-            &grids,
-            [&along[0], &along[1]],
-            &ONES,
-        );
+        let torque = known(&fitted, &grids, [&along[0], &along[1]], &ONES);
         for (qd, row) in grids[0].iter().zip(&torque) {
             for (q, torque) in grids[1].iter().zip(row) {
                 let away = torque.map_or(0.0, |torque| torque - (2.0 * qd - q));
