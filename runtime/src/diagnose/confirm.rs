@@ -28,6 +28,9 @@ const WORSE: f64 = 1.005;
 /// a short log's own error follows only roughly.
 const HIDDEN_WORSE: f64 = 1.05;
 
+/// Promise below which another motion decides nothing.
+const DECIDES: f64 = 4.0;
+
 /// Standard deviations that some parameter of a change must be from zero.
 const CLEAR: f64 = 3.0;
 
@@ -70,7 +73,7 @@ fn kept(
     joints: &[usize],
     (before, after): (&[Vec<f64>], &[Vec<f64>]),
     (along, promised): (f64, f64),
-    worst: f64,
+    hidden: bool,
 ) -> Result<(), Broken> {
     let gained = 2.0 * along - promised;
     if gained < CONFIRMED * promised - DOUBT * promised.sqrt() {
@@ -80,6 +83,10 @@ fn kept(
         let of_joint = |&joint: &usize| self::error(confirm, joint, rows);
         joints.iter().map(of_joint).sum::<f64>().sqrt()
     };
+    // The plain error has slow noise in it, which whitening takes away: it is asked strictly where
+    // the gain is not clear, and there is something to gain.
+    let clear = promised < DECIDES || gained > 0.5 * promised;
+    let worst = if hidden && clear { HIDDEN_WORSE } else { WORSE };
     match error(after) / error(before) {
         factor if factor > worst => Err(Broken::Worse(factor)),
         _ => Ok(()),
@@ -134,10 +141,7 @@ impl Stepwise<'_> {
         let joints: Vec<usize> = joints.flat_map(|c| c.0.iter().map(|p| p.0)).collect();
         let before = self.bench.rows(state, confirm);
         let entry = self.bench.hypotheses[contender.candidate.number].entry;
-        let worst = match self.bench.catalogue.entries()[entry].hidden_by_parameters {
-            true => HIDDEN_WORSE,
-            false => WORSE,
-        };
+        let hidden = self.bench.catalogue.entries()[entry].hidden_by_parameters;
         let swings = self.bench.kind(contender.candidate.number) == EntryKind::Yielding;
         let kept = |after: &[Vec<f64>]| -> Result<(), Broken> {
             let (along, square) = self.bench.difference(confirm, (&before, after));
@@ -148,7 +152,7 @@ impl Stepwise<'_> {
             };
             let after = between(&before, after, share);
             let change = (share * along, share * share * square);
-            kept(confirm, &joints, (&before, &after), change, worst)
+            kept(confirm, &joints, (&before, &after), change, hidden)
         };
         // Along the measured motion, or, where its noise drowns the columns, along one without.
         let after = self.bench.rows(&next, confirm);
