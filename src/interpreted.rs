@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use idim_codegen::derive::ParameterKind;
 use idim_codegen::describe::{EdgesSpec, FreedomSpec, VelocitySpec, WeightsSpec};
-use idim_codegen::emit::tables::{Signals, signals};
+use idim_codegen::emit::signals::{Signals, signals};
 use idim_codegen::expr::tape::{Batch, Tape};
 use idim_codegen::knowledge;
 use idim_codegen::mechanism;

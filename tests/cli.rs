@@ -129,6 +129,30 @@ fn generate_writes_the_same_code_to_a_file_and_to_standard_output() {
 }
 
 #[test]
+fn generate_writes_c_and_python_into_a_folder_that_it_makes() {
+    let folder = Folder::new();
+    let out = folder.path("made/here/").display().to_string();
+    for language in ["c", "python", "rust"] {
+        let written = idim(&["generate", "scara", "--language", language, "-o", &out]);
+        assert!(written.status.success() && written.stdout.is_empty());
+    }
+    let read = |file: &str| std::fs::read_to_string(Path::new(&out).join(file)).unwrap();
+    assert!(read("scara.h").contains("void scara_D("));
+    assert!(read("scara.c").starts_with("/* See the header. */\n#include \"scara.h\""));
+    assert!(read("scara.rs").starts_with("// @generated"));
+    let printed = stdout(&idim(&["generate", "scara", "--language", "python"]));
+    assert_eq!(read("scara.py"), printed);
+    let printed = stdout(&idim(&["generate", "scara", "--language", "c"]));
+    assert!(!printed.contains("scara.h\""), "one text stands alone");
+    let file = format!("{out}scara.h");
+    fails(
+        &["generate", "scara", "--language", "c", "-o", &file],
+        2,
+        &["2 files", "name a folder"],
+    );
+}
+
+#[test]
 fn demo_shows_three_models_and_writes_its_log_and_result() {
     let folder = Folder::new();
     let out = folder.path("demo").display().to_string();

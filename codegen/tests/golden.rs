@@ -29,6 +29,26 @@ fn emps_module_is_one_axis() {
     insta::assert_snapshot!(robot("robots/emps.toml"));
 }
 
+#[test]
+fn scara_header_tells_a_c_programmer_everything() {
+    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../robots/scara.toml");
+    let [header, _] = emit::c(&builder::read(&path).unwrap().robot);
+    insta::assert_snapshot!(header.text);
+}
+
+#[test]
+fn scara_source_in_c_reads_like_the_paper() {
+    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../robots/scara.toml");
+    let [_, source] = emit::c(&builder::read(&path).unwrap().robot);
+    insta::assert_snapshot!(source.text);
+}
+
+#[test]
+fn scara_python_module_reads_like_the_paper() {
+    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../robots/scara.toml");
+    insta::assert_snapshot!(emit::python(&builder::read(&path).unwrap().robot).text);
+}
+
 /// A worse kernel is a red test: multiplications/additions/sines and cosines of the inertial
 /// columns, and the number of parameters.
 #[test]

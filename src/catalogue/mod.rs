@@ -30,7 +30,7 @@ use std::sync::OnceLock;
 use idim_codegen::Robot;
 use idim_codegen::catalogue::EffectKind;
 use idim_codegen::derive::ParameterKind;
-use idim_codegen::emit::tables::signals as distinct;
+use idim_codegen::emit::signals::signals as distinct;
 use idim_codegen::expr::Expr;
 use idim_codegen::mechanism::JointKind;
 use idim_codegen::robot::Output;

@@ -1,9 +1,10 @@
 //! Where results go: standard output that may be closed, files that are written whole.
 
 use std::io::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use serde::Serialize;
+use tempfile::NamedTempFile;
 
 use super::Failure;
 
@@ -32,19 +33,42 @@ pub fn complain(message: &str) {
 /// # Errors
 /// [`Failure::Write`] when the folder or the file cannot be written.
 pub fn write_whole(path: &Path, text: &str) -> Result<(), Failure> {
-    let failed = |source: std::io::Error| Failure::Write {
-        path: path.to_owned(),
-        source,
-    };
+    persist(path, temporary(path, text)?)
+}
+
+/// Writes files that belong together: none takes its place before all are written.
+///
+/// # Errors
+/// [`Failure::Write`] when the folder or one of the files cannot be written.
+pub fn write_all_whole(texts: &[(PathBuf, String)]) -> Result<(), Failure> {
+    let written = texts.iter().map(|(path, text)| temporary(path, text));
+    let written = written.collect::<Result<Vec<_>, Failure>>()?;
+    let pairs = texts.iter().zip(written);
+    pairs.map(|((path, _), file)| persist(path, file)).collect()
+}
+
+fn temporary(path: &Path, text: &str) -> Result<NamedTempFile, Failure> {
+    let failed = |source| failed(path, source);
     let folder = path
         .parent()
         .filter(|folder| !folder.as_os_str().is_empty());
-    let mut file =
-        tempfile::NamedTempFile::new_in(folder.unwrap_or(Path::new("."))).map_err(failed)?;
+    let mut file = NamedTempFile::new_in(folder.unwrap_or(Path::new("."))).map_err(failed)?;
     file.write_all(text.as_bytes()).map_err(failed)?;
     readable_by_all(file.as_file()).map_err(failed)?;
-    file.persist(path).map_err(|error| failed(error.error))?;
+    Ok(file)
+}
+
+fn persist(path: &Path, file: NamedTempFile) -> Result<(), Failure> {
+    let persisted = file.persist(path);
+    persisted.map_err(|error| failed(path, error.error))?;
     Ok(())
+}
+
+fn failed(path: &Path, source: std::io::Error) -> Failure {
+    Failure::Write {
+        path: path.to_owned(),
+        source,
+    }
 }
 
 /// Temporary files are private; results are as readable as any other file.

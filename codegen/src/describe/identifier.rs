@@ -4,7 +4,7 @@
 const MAX_LENGTH: usize = 64;
 
 /// Words that Rust keeps for itself.
-const KEYWORDS: [&str; 53] = [
+pub const KEYWORDS: [&str; 53] = [
     "abstract",
     "as",
     "async",

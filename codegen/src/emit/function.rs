@@ -1,13 +1,12 @@
-//! One emitted function: constants, then body by body what is computed and what is stored.
+//! One emitted function, language by language the same: sines and cosines, constants, then body by
+//! body what is computed and what is stored.
 
-use proc_macro2::{Ident, Literal, TokenStream};
-use quote::{format_ident, quote};
-
-use super::comment;
+use super::angles::{self, Trig};
+use super::language::Language;
 use super::statement::Writer;
 use crate::base::BaseParameter;
 use crate::derive::ParameterKind;
-use crate::expr::{Expr, Node, schedule};
+use crate::expr::{Expr, Input, Node, schedule};
 use crate::robot::{Entry, Output, Robot};
 
 /// An output of a function and the name of the argument it goes to.
@@ -15,35 +14,65 @@ use crate::robot::{Entry, Output, Robot};
 pub struct Target {
     /// The output.
     pub output: Output,
-    /// Argument name: `d`, `p`, `r`, `h`, `dh`.
+    /// Argument name, such as `d`.
     pub argument: &'static str,
 }
 
-/// Statements that compute and store all non-zero entries of the targets.
-pub fn body(robot: &Robot, targets: &[Target]) -> TokenStream {
-    let stores: Vec<Store> = targets
-        .iter()
-        .flat_map(|target| {
-            let argument = format_ident!("{}", target.argument);
-            let matrix = !matches!(target.output, Output::Energy | Output::Power);
-            robot
-                .entries(target.output)
-                .into_iter()
-                .map(move |entry| Store {
-                    argument: argument.clone(),
-                    matrix,
-                    entry,
-                })
-        })
-        .collect();
+/// What a function does, in order.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Body {
+    /// The inputs that it reads, ascending.
+    pub inputs: Vec<Input>,
+    /// The sines and cosines that it needs.
+    pub trig: Vec<Trig>,
+    /// Constants, values and stores.
+    pub lines: Vec<Line>,
+}
+
+/// A line of a function.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Line {
+    /// The share of a link begins, or that of the effects.
+    Section(String),
+    /// A constant gets a name.
+    Constant {
+        /// The name.
+        name: String,
+        /// Its value, positive.
+        value: f64,
+    },
+    /// A value gets a name.
+    Value {
+        /// The name.
+        name: String,
+        /// The value.
+        value: String,
+    },
+    /// A value goes to an output.
+    Store {
+        /// Argument of the function.
+        argument: &'static str,
+        /// Row, if the output has more than one.
+        row: Option<usize>,
+        /// Column.
+        column: usize,
+        /// The value.
+        value: String,
+        /// Name of the parameter whose column it is.
+        parameter: String,
+    },
+}
+
+/// Computes and stores all non-zero entries of the targets.
+pub fn body(robot: &Robot, targets: &[Target], language: &dyn Language) -> Body {
+    let stores: Vec<Store> = targets.iter().flat_map(|t| stores(robot, *t)).collect();
     let outputs: Vec<Expr> = stores.iter().map(|store| store.entry.value).collect();
     let mut needed = schedule::order(&robot.graph, &outputs);
     needed.sort_unstable();
-    let mut writer = Writer::new(&robot.graph, &outputs);
-    let constants = constants(robot, &needed, &mut writer);
-    let mut statements = TokenStream::new();
+    let mut writer = Writer::new(&robot.graph, &outputs, language);
+    let mut lines = constants(robot, &needed, &mut writer);
     for section in sections(robot) {
-        statements.extend(self::section(
+        lines.extend(self::section(
             robot,
             &section,
             &needed,
@@ -51,13 +80,43 @@ pub fn body(robot: &Robot, targets: &[Target]) -> TokenStream {
             &mut writer,
         ));
     }
-    quote! { #constants #statements }
+    let trig = angles::trig(&robot.graph, &needed);
+    Body {
+        inputs: inputs(robot, &needed, &trig),
+        trig,
+        lines,
+    }
+}
+
+fn inputs(robot: &Robot, needed: &[usize], trig: &[Trig]) -> Vec<Input> {
+    let read = needed
+        .iter()
+        .filter_map(|&node| match robot.graph.nodes()[node] {
+            Node::Input(input) => Some(input),
+            _ => None,
+        });
+    let angles = trig.iter().flat_map(|trig| &trig.angle.terms);
+    let turned = angles.map(|&(joint, _)| Input::Q(joint));
+    let mut inputs: Vec<Input> = read.chain(turned).collect();
+    inputs.sort_unstable();
+    inputs.dedup();
+    inputs
 }
 
 struct Store {
-    argument: Ident,
+    argument: &'static str,
     matrix: bool,
     entry: Entry,
+}
+
+fn stores(robot: &Robot, target: Target) -> impl Iterator<Item = Store> {
+    let matrix = !matches!(target.output, Output::Energy | Output::Power);
+    let entries = robot.entries(target.output).into_iter();
+    entries.map(move |entry| Store {
+        argument: target.argument,
+        matrix,
+        entry,
+    })
 }
 
 /// A part of the function: the share of one link, or what comes after all links.
@@ -124,48 +183,45 @@ fn section(
     needed: &[usize],
     stores: &[Store],
     writer: &mut Writer<'_>,
-) -> TokenStream {
-    let mut statements = TokenStream::new();
+) -> Vec<Line> {
+    let mut lines = Vec::new();
     for &node in &section.nodes {
         if needed.binary_search(&node).is_ok() && writer.is_named(node) {
-            statements.extend(writer.binding(node));
+            let value = writer.definition(node);
+            let name = writer.name(node);
+            lines.push(Line::Value { name, value });
         }
     }
-    for store in stores
-        .iter()
-        .filter(|store| section.columns.contains(&store.entry.column))
+    for Store {
+        argument,
+        matrix,
+        entry,
+    } in stores
     {
-        let value = writer.value(store.entry.value);
-        let (argument, row, column) = (
-            &store.argument,
-            Literal::usize_unsuffixed(store.entry.row),
-            Literal::usize_unsuffixed(store.entry.column),
-        );
-        let note = comment::note(&robot.base.parameters[store.entry.column].name);
-        statements.extend(match store.matrix {
-            true => quote! { #argument[#row][#column] = #value; #note },
-            false => quote! { #argument[#column] = #value; #note },
-        });
+        if section.columns.contains(&entry.column) {
+            lines.push(Line::Store {
+                argument,
+                row: matrix.then_some(entry.row),
+                column: entry.column,
+                value: writer.value(entry.value),
+                parameter: robot.base.parameters[entry.column].name.clone(),
+            });
+        }
     }
-    if statements.is_empty() {
-        return statements;
+    if !lines.is_empty() {
+        lines.insert(0, Line::Section(section.title.clone()));
     }
-    let title = comment::comment(&section.title);
-    quote! { #title #statements }
+    lines
 }
 
-fn constants(robot: &Robot, needed: &[usize], writer: &mut Writer<'_>) -> TokenStream {
-    let (zero, one) = (robot.graph.zero().node(), robot.graph.one().node());
-    let mut statements = TokenStream::new();
-    for &node in needed {
-        if let Node::Constant(bits) = robot.graph.nodes()[node] {
-            if node == zero || node == one {
-                continue;
-            }
-            let name = writer.names.of(&robot.graph, node);
-            let value = Literal::f64_unsuffixed(f64::from_bits(bits));
-            statements.extend(quote! { let #name = T::splat(#value); });
-        }
-    }
-    statements
+fn constants(robot: &Robot, needed: &[usize], writer: &mut Writer<'_>) -> Vec<Line> {
+    let known = [robot.graph.zero().node(), robot.graph.one().node()];
+    let constant = |&node: &usize| match robot.graph.nodes()[node] {
+        Node::Constant(bits) if !known.contains(&node) => Some(Line::Constant {
+            name: writer.name(node),
+            value: f64::from_bits(bits),
+        }),
+        _ => None,
+    };
+    needed.iter().filter_map(constant).collect()
 }

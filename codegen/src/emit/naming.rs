@@ -2,30 +2,41 @@
 
 use std::collections::{HashMap, HashSet};
 
-use proc_macro2::Ident;
-use quote::format_ident;
-
 use crate::expr::{AngleSum, Graph, Node};
 
 /// Hands out one identifier per node, no two alike.
 #[derive(Debug, Default)]
 pub struct Names {
-    given: HashMap<usize, Ident>,
+    given: HashMap<usize, String>,
     taken: HashSet<String>,
+    angles: Vec<String>,
     counter: usize,
 }
 
 impl Names {
+    /// No names given yet; none will be one of the reserved words.
+    pub fn new(graph: &Graph, reserved: Vec<String>) -> Names {
+        let angles = angles(graph);
+        let trig = angles
+            .iter()
+            .flat_map(|angle| ["s", "c"].map(|function| format!("{function}{angle}")));
+        Names {
+            taken: reserved.into_iter().chain(trig).collect(),
+            angles,
+            ..Names::default()
+        }
+    }
+
     /// The identifier of a node: the name it was given when it was derived, or `t1`, `t2`, ... for
     /// what several meanings share.
-    pub fn of(&mut self, graph: &Graph, node: usize) -> Ident {
+    pub fn of(&mut self, graph: &Graph, node: usize) -> String {
         if let Some(known) = self.given.get(&node) {
             return known.clone();
         }
         let wish = match graph.nodes()[node] {
+            Node::Sin(angle) => return format!("s{}", self.angles[angle]),
+            Node::Cos(angle) => return format!("c{}", self.angles[angle]),
             Node::Constant(bits) => constant(graph, node, f64::from_bits(bits)),
-            Node::Sin(angle) => trig("s", graph.angle(angle)),
-            Node::Cos(angle) => trig("c", graph.angle(angle)),
             _ => match graph.name_of(node) {
                 Some(name) => name.to_owned(),
                 None => {
@@ -34,26 +45,34 @@ impl Names {
                 }
             },
         };
-        let ident = self.unique(&wish);
-        self.given.insert(node, ident.clone());
-        ident
-    }
-
-    fn unique(&mut self, wish: &str) -> Ident {
-        let mut name = wish.to_owned();
-        let mut again = 2;
-        while !self.taken.insert(name.clone()) {
-            name = format!("{wish}_{again}");
-            again += 1;
-        }
-        format_ident!("{name}")
+        let name = unique(&mut self.taken, &wish);
+        self.given.insert(node, name.clone());
+        name
     }
 }
 
-/// `s23` for sin(q2 + q3), `s2m3` for sin(q2 - q3), `s6o` with a constant offset.
-pub fn trig(function: &str, angle: &AngleSum) -> String {
+fn unique(taken: &mut HashSet<String>, wish: &str) -> String {
+    let mut name = wish.to_owned();
+    let mut again = 2;
+    while !taken.insert(name.clone()) {
+        name = format!("{wish}_{again}");
+        again += 1;
+    }
+    name
+}
+
+/// The name of every angle of a graph, to go behind `s` or `c`: `23` for q2 + q3, `2m3` for
+/// q2 - q3, `6o` with a constant offset.
+pub fn angles(graph: &Graph) -> Vec<String> {
+    let mut taken = HashSet::new();
+    (0..graph.angle_count())
+        .map(|index| unique(&mut taken, &angle(graph.angle(index))))
+        .collect()
+}
+
+fn angle(angle: &AngleSum) -> String {
     let wide = angle.terms.iter().any(|&(joint, _)| joint >= 9);
-    let mut name = function.to_owned();
+    let mut name = String::new();
     for (place, &(joint, sign)) in angle.terms.iter().enumerate() {
         if sign < 0 {
             name.push('m');

@@ -1,12 +1,10 @@
-//! Expressions of the graph as Rust expressions.
+//! Expressions of the graph as text.
 
 use std::collections::HashSet;
 
-use proc_macro2::{Literal, TokenStream};
-use quote::quote;
-
+use super::language::Language;
 use super::naming::Names;
-use crate::expr::{Expr, Function, Graph, Input, Node, schedule};
+use crate::expr::{Expr, Graph, Node, schedule};
 
 /// Operations in one expression beyond which a value gets a name of its own.
 const LONG: usize = 5;
@@ -20,17 +18,16 @@ enum Level {
 }
 
 /// Which values of a function are named, and which stand inside the expression that uses them.
-#[derive(Debug)]
 pub struct Writer<'a> {
     graph: &'a Graph,
+    language: &'a dyn Language,
     named: HashSet<usize>,
-    /// Names given so far.
-    pub names: Names,
+    names: Names,
 }
 
 impl<'a> Writer<'a> {
     /// Decides for a set of outputs: what is used once and is short stands where it is used.
-    pub fn new(graph: &'a Graph, outputs: &[Expr]) -> Writer<'a> {
+    pub fn new(graph: &'a Graph, outputs: &[Expr], language: &'a dyn Language) -> Writer<'a> {
         let uses = schedule::uses(graph, outputs);
         let mut named = HashSet::new();
         let mut size = vec![0usize; graph.nodes().len()];
@@ -53,8 +50,9 @@ impl<'a> Writer<'a> {
         }
         Writer {
             graph,
+            language,
             named,
-            names: Names::default(),
+            names: Names::new(graph, language.reserved()),
         }
     }
 
@@ -63,19 +61,22 @@ impl<'a> Writer<'a> {
         self.named.contains(&node)
     }
 
-    /// `let name = ...;` for a named node.
-    pub fn binding(&mut self, node: usize) -> TokenStream {
-        let value = self.node(node).0;
-        let name = self.names.of(self.graph, node);
-        quote! { let #name = #value; }
+    /// The name of a node.
+    pub fn name(&mut self, node: usize) -> String {
+        self.names.of(self.graph, node)
+    }
+
+    /// The value of a named node, written out.
+    pub fn definition(&mut self, node: usize) -> String {
+        self.node(node).0
     }
 
     /// An expression with its sign.
-    pub fn value(&mut self, x: Expr) -> TokenStream {
+    pub fn value(&mut self, x: Expr) -> String {
         self.signed(x).0
     }
 
-    fn signed(&mut self, x: Expr) -> (TokenStream, Level) {
+    fn signed(&mut self, x: Expr) -> (String, Level) {
         if !x.is_negative() {
             return self.reference(x.node());
         }
@@ -84,70 +85,49 @@ impl<'a> Writer<'a> {
         }
         let (inner, level) = self.reference(x.node());
         match level {
-            Level::Sum => (quote! { -(#inner) }, Level::Product),
-            _ => (quote! { -#inner }, Level::Product),
+            Level::Sum => (format!("-({inner})"), Level::Product),
+            _ => (format!("-{inner}"), Level::Product),
         }
     }
 
     /// A node where it is used: by its name, or written out.
-    fn reference(&mut self, node: usize) -> (TokenStream, Level) {
+    fn reference(&mut self, node: usize) -> (String, Level) {
         match self.graph.nodes()[node] {
-            Node::Input(input) => (self::input(input), Level::Atom),
-            Node::Sin(_) | Node::Cos(_) | Node::Constant(_) => self.leaf(node),
-            _ if self.is_named(node) => {
-                let name = self.names.of(self.graph, node);
-                (quote! { #name }, Level::Atom)
-            }
+            Node::Input(input) => (self.language.input(input), Level::Atom),
+            Node::Sin(_) | Node::Cos(_) | Node::Constant(_) => (self.leaf(node), Level::Atom),
+            _ if self.is_named(node) => (self.name(node), Level::Atom),
             _ => self.node(node),
         }
     }
 
-    fn leaf(&mut self, node: usize) -> (TokenStream, Level) {
+    fn leaf(&mut self, node: usize) -> String {
         if node == self.graph.zero().node() {
-            return (quote! { T::splat(0.0) }, Level::Atom);
+            return self.language.number(0.0);
         }
         if node == self.graph.one().node() {
-            return (quote! { T::splat(1.0) }, Level::Atom);
+            return self.language.number(1.0);
         }
-        let name = self.names.of(self.graph, node);
+        let name = self.name(node);
         match self.graph.nodes()[node] {
-            Node::Constant(_) => (quote! { #name }, Level::Atom),
-            _ => (quote! { x.#name }, Level::Atom),
+            Node::Constant(_) => name,
+            _ => self.language.trig(&name),
         }
     }
 
-    fn node(&mut self, node: usize) -> (TokenStream, Level) {
+    fn node(&mut self, node: usize) -> (String, Level) {
         match self.graph.nodes()[node] {
             Node::Add(a, b) => {
                 let a = self.signed(a).0;
-                let (b, level) = self.signed(b);
-                let b = if level == Level::Sum {
-                    quote! { (#b) }
-                } else {
-                    b
-                };
-                (quote! { #a + #b }, Level::Sum)
+                (format!("{a} + {}", self.term(b)), Level::Sum)
             }
             Node::Sub(a, b) => self.difference(a, b),
             Node::Mul(a, b) => {
                 let (a, b) = (self.factor(a), self.factor(b));
-                (quote! { #a * #b }, Level::Product)
+                (format!("{a} * {b}"), Level::Product)
             }
             Node::Call(function, a) => {
-                let inner = self.factor(a);
-                let call = match function {
-                    Function::Sign => quote! { #inner.sign() },
-                    Function::Abs => quote! { #inner.abs() },
-                    Function::Tanh => quote! { #inner.tanh() },
-                    Function::Bell => quote! { #inner.bell() },
-                    Function::Power(p) => {
-                        let p = Literal::f64_unsuffixed(f64::from_bits(p));
-                        quote! { #inner.abs_power(#p) }
-                    }
-                    Function::Sine => quote! { #inner.sin_cos().0 },
-                    Function::Cosine => quote! { #inner.sin_cos().1 },
-                };
-                (call, Level::Atom)
+                let (bare, factor) = (self.signed(a).0, self.factor(a));
+                (self.language.call(function, &bare, &factor), Level::Atom)
             }
             Node::Input(_) | Node::Sin(_) | Node::Cos(_) | Node::Constant(_) => {
                 self.reference(node)
@@ -155,48 +135,28 @@ impl<'a> Writer<'a> {
         }
     }
 
-    fn difference(&mut self, a: Expr, b: Expr) -> (TokenStream, Level) {
+    fn difference(&mut self, a: Expr, b: Expr) -> (String, Level) {
         let a = self.signed(a).0;
-        let (b, level) = self.signed(b);
-        let b = if level == Level::Sum {
-            quote! { (#b) }
-        } else {
-            b
-        };
-        (quote! { #a - #b }, Level::Sum)
+        (format!("{a} - {}", self.term(b)), Level::Sum)
     }
 
-    fn factor(&mut self, x: Expr) -> TokenStream {
+    /// An expression after a plus or a minus.
+    fn term(&mut self, x: Expr) -> String {
         let (inner, level) = self.signed(x);
-        let product = matches!(self.graph.nodes()[x.node()], Node::Mul(..));
         match level {
-            Level::Sum => quote! { (#inner) },
-            // Grouped as the graph has it: rounding is the same in every reader of the graph.
-            Level::Product if product && !self.is_named(x.node()) => quote! { (#inner) },
+            Level::Sum => format!("({inner})"),
             _ => inner,
         }
     }
-}
 
-/// `x.q[1]`, `x.qd[1]`, `x.qdd[1]`, `x.slip[1]`.
-fn input(input: Input) -> TokenStream {
-    let place = |joint: usize| Literal::usize_unsuffixed(joint);
-    match input {
-        Input::Q(joint) => {
-            let joint = place(joint);
-            quote! { x.q[#joint] }
-        }
-        Input::Qd(joint) => {
-            let joint = place(joint);
-            quote! { x.qd[#joint] }
-        }
-        Input::Qdd(joint) => {
-            let joint = place(joint);
-            quote! { x.qdd[#joint] }
-        }
-        Input::Slip(joint) => {
-            let joint = place(joint);
-            quote! { x.slip[#joint] }
+    fn factor(&mut self, x: Expr) -> String {
+        let (inner, level) = self.signed(x);
+        let product = matches!(self.graph.nodes()[x.node()], Node::Mul(..));
+        match level {
+            Level::Sum => format!("({inner})"),
+            // Grouped as the graph has it: rounding is the same in every reader of the graph.
+            Level::Product if product && !self.is_named(x.node()) => format!("({inner})"),
+            _ => inner,
         }
     }
 }

@@ -1,16 +1,14 @@
 //! The tables beside the functions: joints, columns, patterns, settings.
 
-use std::collections::HashMap;
-
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
 use crate::derive::ParameterKind;
 use crate::describe::{EdgesSpec, FreedomSpec, VelocitySpec, WeightsSpec};
-use crate::expr::Expr;
+use crate::emit::signals::Signals;
 use crate::knowledge::Knowledge;
 use crate::mechanism::JointKind;
-use crate::robot::{Output, Robot};
+use crate::robot::Robot;
 
 /// `[Joint; n]`.
 pub fn joints(robot: &Robot) -> TokenStream {
@@ -49,33 +47,6 @@ pub fn columns(robot: &Robot) -> TokenStream {
         }
     });
     quote! { [#(#columns),*] }
-}
-
-/// The entries of an output, each with the signal it shares with equal entries, and for each
-/// signal the first entry that holds it.
-#[derive(Clone, Debug, Default)]
-pub struct Signals {
-    /// (row, column, signal) by row, then by column.
-    pub entries: Vec<(usize, usize, usize)>,
-    /// (row, column) of the first entry of each signal.
-    pub first: Vec<(usize, usize)>,
-    /// The value of each signal.
-    pub values: Vec<Expr>,
-}
-
-/// Finds equal entries.
-pub fn signals(robot: &Robot, output: Output) -> Signals {
-    let mut known: HashMap<Expr, usize> = HashMap::new();
-    let mut signals = Signals::default();
-    for entry in robot.entries(output) {
-        let signal = *known.entry(entry.value).or_insert_with(|| {
-            signals.first.push((entry.row, entry.column));
-            signals.values.push(entry.value);
-            signals.first.len() - 1
-        });
-        signals.entries.push((entry.row, entry.column, signal));
-    }
-    signals
 }
 
 /// `Pattern { .. }` of an output.

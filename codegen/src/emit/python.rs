@@ -1,0 +1,251 @@
+//! Python: one module over numpy, for one state or for many at once.
+
+use super::File;
+use super::function::{self, Line, Target};
+use super::language::Language;
+use super::signature::{self, Signature, has_slip};
+use super::summary::summary;
+use super::text::{number, quoted, remark};
+use crate::expr::{Function, Input};
+use crate::knowledge::Knowledge;
+use crate::robot::Robot;
+
+/// Words that a local variable cannot have: keywords, arguments, what a function calls.
+const RESERVED: &str = "False None True and as assert async await break class continue def del \
+    elif else except finally for from global if import in is lambda nonlocal not or pass raise \
+    return try while with yield match case type np out q qd qdd slip D P R h dh \
+    JOINTS PARAMETERS _signals";
+
+/// Python as a [`Language`].
+struct Python {
+    joints: usize,
+}
+
+impl Language for Python {
+    fn reserved(&self) -> Vec<String> {
+        let words = RESERVED.split_whitespace().map(str::to_owned);
+        let inputs = ["q", "qd", "qdd", "slip"];
+        let joints = 1..=self.joints;
+        let inputs = joints.flat_map(|joint| inputs.map(|input| format!("{input}{joint}")));
+        words.chain(inputs).collect()
+    }
+
+    fn input(&self, input: Input) -> String {
+        let (signal, joint) = place(input);
+        format!("{signal}{}", joint + 1)
+    }
+
+    fn trig(&self, name: &str) -> String {
+        name.to_owned()
+    }
+
+    fn number(&self, value: f64) -> String {
+        number(value)
+    }
+
+    fn call(&self, function: Function, x: &str, _: &str) -> String {
+        match function {
+            Function::Sign => format!("np.sign({x})"),
+            Function::Abs => format!("np.abs({x})"),
+            Function::Tanh => format!("np.tanh({x})"),
+            Function::Bell => format!("np.exp(-np.square({x}))"),
+            Function::Power(p) => format!("np.power(np.abs({x}), {})", number(f64::from_bits(p))),
+            Function::Sine => format!("np.sin({x})"),
+            Function::Cosine => format!("np.cos({x})"),
+        }
+    }
+}
+
+/// The signal and the joint of an input.
+fn place(input: Input) -> (&'static str, usize) {
+    match input {
+        Input::Q(joint) => ("q", joint),
+        Input::Qd(joint) => ("qd", joint),
+        Input::Qdd(joint) => ("qdd", joint),
+        Input::Slip(joint) => ("slip", joint),
+    }
+}
+
+/// The module of a robot.
+pub fn python(robot: &Robot) -> File {
+    let mut text = String::from("\"\"\"");
+    for line in summary(robot, "change the description and generate again") {
+        text.push_str(&remark(&line));
+        text.push('\n');
+    }
+    text.push_str(USE);
+    text.push_str(&tables(robot));
+    text.push_str(HELPERS);
+    for signature in &signature::ALL {
+        text.push_str(&definition(robot, signature));
+    }
+    File {
+        name: format!("{}.py", robot.mechanism.name),
+        text,
+    }
+}
+
+const USE: &str = "
+tau = D(q, qd, qdd) @ X, with X in the order of COLUMNS. Signals are SI and have the shape (n,) for
+one state or (N, n) for many, outputs (n, nb) or (N, n, nb): n = JOINTS, nb = PARAMETERS. Any
+further axes in front are kept.
+\"\"\"
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+
+class Column(NamedTuple):
+    \"\"\"A base parameter; `relation` are the standard parameters that it stands for.\"\"\"
+
+    name: str
+    unit: str
+    joint: int
+    meaning: str
+    relation: str
+
+
+";
+
+const HELPERS: &str = "
+
+def _signals(*signals: ArrayLike) -> tuple[NDArray[np.float64], ...]:
+    \"\"\"The signals as arrays of one shape (..., n).\"\"\"
+    arrays = [np.asarray(signal, dtype=np.float64) for signal in signals]
+    for array in arrays:
+        if array.ndim == 0 or array.shape[-1] != JOINTS:
+            raise ValueError(
+                f\"signals must have the shape ({JOINTS},) or (N, {JOINTS}), not {array.shape}\"
+            )
+    return tuple(np.broadcast_arrays(*arrays))
+";
+
+fn tables(robot: &Robot) -> String {
+    let columns: String = (robot.base.parameters.iter())
+        .map(|parameter| {
+            format!(
+                "    Column(\n        {},\n        {},\n        {},\n        {},\n        {},\n    ),\n",
+                quoted(&parameter.name),
+                quoted(&parameter.unit),
+                parameter.link + 1,
+                quoted(&parameter.meaning),
+                quoted(&parameter.relation_text())
+            )
+        })
+        .collect();
+    let joints: String = (robot.mechanism.joints.iter())
+        .map(|joint| format!("    {},\n", quoted(&joint.name)))
+        .collect();
+    let values: String = (Knowledge::of(robot).nominal.iter())
+        .zip(&robot.base.parameters)
+        .map(|(value, parameter)| {
+            let value = value.map_or("np.nan".to_owned(), number);
+            format!("        {value},  # {}\n", parameter.name)
+        })
+        .collect();
+    format!(
+        "NAME = {}\nJOINTS = {}\nPARAMETERS = {}\nDESCRIPTION_HASH = {}\n\n\
+         # In the order of q.\nJOINT_NAMES = (\n{joints})\n\n\
+         # In the order of the columns of every output.\nCOLUMNS = (\n{columns})\n\n\
+         # X of the description; not a number where it gives no value.\n\
+         NOMINAL = np.array(\n    [\n{values}    ]\n)\n",
+        quoted(&robot.mechanism.name),
+        robot.mechanism.joints.len(),
+        robot.base.parameters.len(),
+        quoted(&robot.description.hash)
+    )
+}
+
+fn definition(robot: &Robot, signature: &Signature) -> String {
+    let target = Target {
+        output: signature.output,
+        argument: "out",
+    };
+    let language = Python {
+        joints: robot.mechanism.joints.len(),
+    };
+    let body = function::body(robot, &[target], &language);
+    let mut text = opening(robot, signature);
+    for &input in &body.inputs {
+        let (signal, joint) = place(input);
+        text.push_str(&format!(
+            "    {signal}{} = {signal}[..., {joint}]\n",
+            joint + 1
+        ));
+    }
+    for trig in &body.trig {
+        let angle = trig.code(|joint| format!("q{}", joint + 1), number);
+        for (name, function) in [(&trig.sine, "sin"), (&trig.cosine, "cos")] {
+            if let Some(name) = name {
+                text.push_str(&format!("    {name} = np.{function}({angle})\n"));
+            }
+        }
+    }
+    text.extend(body.lines.iter().map(line));
+    text.push_str("    return out\n");
+    text
+}
+
+/// `def`, docstring, and what every function begins with.
+fn opening(robot: &Robot, signature: &Signature) -> String {
+    let Signature {
+        name,
+        summary,
+        unit,
+        ..
+    } = signature;
+    let signals = signature.signals.join(", ");
+    let arguments: Vec<String> = (signature.signals.iter())
+        .map(|signal| format!("{signal}: ArrayLike"))
+        .collect();
+    let arguments = arguments.join(", ");
+    let rows = if signature.matrix { "n, " } else { "" };
+    let one = if signature.matrix { "(n, nb)" } else { "(nb,)" };
+    let shape = if signature.matrix {
+        "q.shape"
+    } else {
+        "q.shape[:-1]"
+    };
+    let (slip, told, used) = match has_slip(robot) {
+        true => (", slip: ArrayLike | None = None", SLIP, ", slip"),
+        false => ("", "", ""),
+    };
+    let prepared = match has_slip(robot) {
+        true => "    slip = np.sign(qd) if slip is None else slip\n",
+        false => "",
+    };
+    format!(
+        "\n\ndef {name}({arguments}{slip}) -> NDArray[np.float64]:\n    \
+         \"\"\"{summary}.\n\n    \
+         Takes {signals} of shape (n,) or (N, n), in rad or m and s.{told}\n    \
+         Returns the shape {one} or (N, {rows}nb), {unit}.\n    \"\"\"\n\
+         {prepared}    {signals}{used} = _signals({signals}{used})\n    \
+         out = np.zeros({shape} + (PARAMETERS,))\n"
+    )
+}
+
+/// What the docstrings of a robot whose friction has a memory say of it.
+const SLIP: &str = " Presliding
+    states `slip`, z/zs with dz/dt = qd - |qd| z/zs, are those of sliding if not given.";
+
+fn line(line: &Line) -> String {
+    match line {
+        Line::Section(title) => format!("\n    # {}\n", remark(title)),
+        Line::Constant { name, value } => format!("    {name} = {}\n", number(*value)),
+        Line::Value { name, value } => format!("    {name} = {value}\n"),
+        Line::Store {
+            argument,
+            row,
+            column,
+            value,
+            parameter,
+        } => {
+            let row = row.map_or(String::new(), |row| format!("{row}, "));
+            format!("    {argument}[..., {row}{column}] = {value}  # {parameter}\n")
+        }
+    }
+}

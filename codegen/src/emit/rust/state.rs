@@ -1,0 +1,108 @@
+//! The state of a robot with the sines and cosines that all outputs share.
+
+use proc_macro2::{Literal, TokenStream};
+use quote::{format_ident, quote};
+
+use super::parsed;
+use crate::emit::angles;
+use crate::expr::schedule;
+use crate::robot::{Output, Robot};
+
+/// `State<T>` and its constructor.
+///
+/// # Errors
+/// A message if an angle is not Rust: a defect of the generator.
+pub fn state(robot: &Robot) -> Result<TokenStream, String> {
+    let mut fields = TokenStream::new();
+    let mut bindings = TokenStream::new();
+    let mut names = TokenStream::new();
+    for trig in trig(robot) {
+        let text = trig.text();
+        let simple = trig.angle.terms.len() == 1 && trig.angle.offset.is_zero();
+        let sum = trig.code(
+            |joint| format!("q[{joint}]"),
+            |value| format!("T::splat({})", Literal::f64_unsuffixed(value)),
+        );
+        let sum = parsed(&if simple { sum } else { format!("({sum})") })?;
+        let mut pair = Vec::new();
+        for (name, function) in [(&trig.sine, "sin"), (&trig.cosine, "cos")] {
+            let Some(name) = name.as_ref().map(|name| format_ident!("{name}")) else {
+                pair.push(quote! { _ });
+                continue;
+            };
+            let doc = format!(" {function}({text})");
+            fields.extend(quote! { #[doc = #doc] pub #name: T, });
+            names.extend(quote! { #name, });
+            pair.push(quote! { #name });
+        }
+        bindings.extend(quote! { let (#(#pair),*) = #sum.sin_cos(); });
+    }
+    Ok(definition(robot, &fields, &bindings, &names))
+}
+
+/// Sines and cosines that any output needs.
+fn trig(robot: &Robot) -> Vec<angles::Trig> {
+    let values: Vec<_> = Output::ALL
+        .into_iter()
+        .flat_map(|output| robot.entries(output))
+        .map(|entry| entry.value)
+        .collect();
+    let mut needed = schedule::order(&robot.graph, &values);
+    needed.sort_unstable();
+    angles::trig(&robot.graph, &needed)
+}
+
+fn definition(
+    robot: &Robot,
+    fields: &TokenStream,
+    bindings: &TokenStream,
+    names: &TokenStream,
+) -> TokenStream {
+    let [slip_field, slip_value, with_slip] = slip(robot);
+    quote! {
+        #[doc = " A state of the robot, with the sines and cosines that all outputs share."]
+        #[derive(Clone, Copy, Debug)]
+        pub struct State<T> {
+            #[doc = " Joint positions, rad or m."]
+            pub q: [T; JOINTS],
+            #[doc = " Joint velocities, rad/s or m/s."]
+            pub qd: [T; JOINTS],
+            #[doc = " Joint accelerations, rad/s^2 or m/s^2."]
+            pub qdd: [T; JOINTS],
+            #slip_field
+            #fields
+        }
+
+        impl<T: Lane> State<T> {
+            #[doc = " Computes each sine and cosine once."]
+            #[inline]
+            pub fn new(q: [T; JOINTS], qd: [T; JOINTS], qdd: [T; JOINTS]) -> Self {
+                #bindings
+                State { q, qd, qdd, #slip_value #names }
+            }
+            #with_slip
+        }
+    }
+}
+
+/// The presliding states as a field, as the constructor sets them, and how a caller does; empty
+/// for a robot whose friction has no memory.
+fn slip(robot: &Robot) -> [TokenStream; 3] {
+    if robot.mechanism.presliding().next().is_none() {
+        return Default::default();
+    }
+    [
+        quote! {
+            #[doc = " Presliding states z/zs; the signs of the velocities in sliding."]
+            pub slip: [T; JOINTS],
+        },
+        quote! { slip: qd.map(Lane::sign), },
+        quote! {
+            #[doc = " With presliding states, dz/dt = qd - |qd| z/zs, instead of those of sliding."]
+            #[inline]
+            pub fn with_slip(self, slip: [T; JOINTS]) -> Self {
+                State { slip, ..self }
+            }
+        },
+    ]
+}
