@@ -153,6 +153,16 @@ fn generate_writes_c_and_python_into_a_folder_that_it_makes() {
 }
 
 #[test]
+fn generate_par_is_a_robot_like_any_other() {
+    let folder = Folder::new();
+    let path = folder.path("puma560.par").display().to_string();
+    let written = idim(&["generate", "puma560", "--language", "par", "-o", &path]);
+    assert!(written.status.success() && written.stdout.is_empty());
+    let text = stdout(&idim(&["describe", &path]));
+    assert!(text.contains("puma560") && text.contains("ZZR1"), "{text}");
+}
+
+#[test]
 fn demo_shows_three_models_and_writes_its_log_and_result() {
     let folder = Folder::new();
     let out = folder.path("demo").display().to_string();

@@ -83,7 +83,7 @@ impl Builder {
         Builder::default()
     }
 
-    /// Adds one description: `.toml` or `.urdf`.
+    /// Adds one description: `.toml`, `.urdf` or `.par`.
     #[must_use]
     pub fn robot(mut self, path: impl Into<PathBuf>) -> Builder {
         self.robots.push(path.into());
@@ -176,7 +176,7 @@ fn read_folder(folder: &Path) -> Result<Vec<Source>, BuildError> {
         .collect();
     for path in paths
         .iter()
-        .filter(|path| ending(path, "urdf") && !named.contains(path))
+        .filter(|path| ending(path, "par") || (ending(path, "urdf") && !named.contains(path)))
     {
         sources.push(read(path)?);
     }

@@ -14,7 +14,7 @@ use super::{Failure, failure, output, robot};
 /// Arguments of `idim describe`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Name of a built-in robot, or path of a .urdf or .toml.
+    /// Name of a built-in robot, or path of a .urdf, .toml or .par.
     robot: String,
     /// Write the description as JSON; `-` for standard output.
     #[arg(long, value_name = "FILE")]

@@ -23,7 +23,7 @@ use super::{Failure, fits, output, robot};
 /// Arguments of `idim diagnose`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Name of a built-in robot, or path of a .urdf or .toml.
+    /// Name of a built-in robot, or path of a .urdf, .toml or .par.
     #[arg(required_unless_present = "list")]
     robot: Option<String>,
     /// Logs to diagnose: LOG, LOG@5..7.5 (seconds) or LOG@#635..3510 (rows).

@@ -61,6 +61,9 @@ pub enum Failure {
         /// What to do.
         help: String,
     },
+    /// A robot that SYMORO's format cannot hold.
+    #[error(transparent)]
+    Par(#[from] idim::codegen::emit::ParError),
     /// A defect of the generator.
     #[error("{0}: please report this")]
     Defect(String),
@@ -92,7 +95,7 @@ impl Failure {
     fn help(&self) -> Option<String> {
         match self {
             Failure::UnknownRobot { known, .. } => Some(format!(
-                "built in are {}; or give the path of a .urdf or .toml",
+                "built in are {}; or give the path of a .urdf, .toml or .par",
                 known.join(", ")
             )),
             Failure::Usage { help, .. } => Some(help.clone()),

@@ -17,12 +17,14 @@ enum Language {
     C,
     /// A Python module that needs numpy only: NAME.py.
     Python,
+    /// The description for SYMORO: NAME.par.
+    Par,
 }
 
 /// Arguments of `idim generate`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Name of a built-in robot, or path of a .urdf or .toml.
+    /// Name of a built-in robot, or path of a .urdf, .toml or .par.
     robot: String,
     /// Language of the code.
     #[arg(long, value_enum, default_value = "rust")]
@@ -52,6 +54,7 @@ fn files(robot: &Robot, language: Language) -> Result<Vec<File>, Failure> {
         }],
         Language::C => emit::c(robot).into(),
         Language::Python => vec![emit::python(robot)],
+        Language::Par => vec![emit::par(robot)?],
     })
 }
 

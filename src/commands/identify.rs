@@ -20,7 +20,7 @@ use super::{Failure, fits, gains, output, robot};
 /// Arguments of `idim identify`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Name of a built-in robot, or path of a .urdf or .toml.
+    /// Name of a built-in robot, or path of a .urdf, .toml or .par.
     robot: String,
     /// Logs to identify from: LOG, LOG@5..7.5 (seconds) or LOG@#635..3510 (rows).
     #[arg(required = true, value_name = "LOG")]

@@ -43,8 +43,8 @@ pub fn write_whole(path: &Path, text: &str) -> Result<(), Failure> {
 pub fn write_all_whole(texts: &[(PathBuf, String)]) -> Result<(), Failure> {
     let written = texts.iter().map(|(path, text)| temporary(path, text));
     let written = written.collect::<Result<Vec<_>, Failure>>()?;
-    let pairs = texts.iter().zip(written);
-    pairs.map(|((path, _), file)| persist(path, file)).collect()
+    let mut pairs = texts.iter().zip(written);
+    pairs.try_for_each(|((path, _), file)| persist(path, file))
 }
 
 fn temporary(path: &Path, text: &str) -> Result<NamedTempFile, Failure> {

@@ -90,6 +90,12 @@ impl Texts {
         first.map_or(("", ""), |(file, text)| (file, text))
     }
 
+    /// Whether the description is SYMORO's.
+    pub fn is_par(&self) -> bool {
+        let extension = Path::new(self.description().0).extension();
+        extension.is_some_and(|extension| extension.eq_ignore_ascii_case("par"))
+    }
+
     /// Whether the description is a TOML, rather than a bare URDF.
     pub fn is_toml(&self) -> bool {
         !self

@@ -27,7 +27,7 @@ const LONGEST: f64 = 1e8;
 #[derive(Debug, clap::Args)]
 #[command(group(clap::ArgGroup::new("motion").required(true).args(["trajectory", "like"])))]
 pub struct Arguments {
-    /// Name of a built-in robot, or path of a .urdf or .toml.
+    /// Name of a built-in robot, or path of a .urdf, .toml or .par.
     robot: String,
     /// Parameters: the JSON of `idim identify --json`, or a TOML with a [parameters] table.
     #[arg(long, value_name = "FILE")]

@@ -2,7 +2,7 @@
 //! `docs/diagnostics.md`.
 //!
 //! 00x files, 01x XML as such, 02x elements and attributes, 03x names and tree, 04x values,
-//! 05x TOML, 06x effects and drives, 1xx warnings.
+//! 05x TOML, 06x effects and drives, 07x SYMORO's `.par`, 1xx warnings.
 
 /// A file cannot be opened or read.
 pub const FILE_UNREADABLE: &str = "IDIM001";
@@ -109,6 +109,11 @@ pub const COUPLING_SINGULAR: &str = "IDIM065";
 /// A `[scaled]` entry that is not a factor times a parameter.
 pub const SCALED: &str = "IDIM066";
 
+/// What is neither `key = value` nor `key = {values}`.
+pub const PAR_SYNTAX: &str = "IDIM070";
+/// A closed loop.
+pub const CLOSED_LOOP: &str = "IDIM071";
+
 /// A moving link without inertial values.
 pub const MASSLESS: &str = "IDIM100";
 /// A mass that is zero or negative.
@@ -129,3 +134,5 @@ pub const JOINTS_REORDERED: &str = "IDIM107";
 pub const NAME_SHARED: &str = "IDIM108";
 /// Joint damping or friction below zero.
 pub const DAMPING_NEGATIVE: &str = "IDIM109";
+/// What a `.par` says and the model leaves out.
+pub const PAR_LEFT_OUT: &str = "IDIM110";

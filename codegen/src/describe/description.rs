@@ -100,6 +100,8 @@ pub struct MdhRow {
     pub theta: Quantity,
     /// Translation along z, m; added to q of a prismatic joint.
     pub r: Quantity,
+    /// XX, XY, XZ, YY, YZ, ZZ, MX, MY, MZ, M about the origin of this frame, if described.
+    pub inertial: Option<[f64; 10]>,
     /// Limits, if stated.
     pub limits: Limits,
     /// Where the row stands.

@@ -1,6 +1,6 @@
 //! The small expressions of descriptions: `pi/2`, `-L1`, `L*cos(pi/6) + 0.1`.
 //!
-//! Numbers, `pi`, named lengths, `+ - * /`, parentheses, `cos`, `sin`, `sqrt`. Evaluated while they
+//! Numbers, `pi`, named lengths, `+ - * /`, parentheses, `cos`, `sin`, `sqrt`, `atan2`. Evaluated while they
 //! are read; nesting is limited, so that no text can exhaust the stack.
 
 use super::suggest;
@@ -9,7 +9,7 @@ use super::suggest;
 const MAX_DEPTH: usize = 32;
 
 /// Names that are not free for lengths.
-pub(crate) const RESERVED: [&str; 4] = ["pi", "cos", "sin", "sqrt"];
+pub(crate) const RESERVED: [&str; 5] = ["pi", "cos", "sin", "sqrt", "atan2"];
 
 /// Why an expression has no value.
 #[derive(Debug, PartialEq)]
@@ -41,7 +41,8 @@ pub(crate) fn evaluate(text: &str, lengths: &[(String, f64)]) -> Result<f64, Mis
     }
 }
 
-const HELP: &str = "expressions are numbers, pi and named lengths with + - * / ( ) cos sin sqrt";
+const HELP: &str =
+    "expressions are numbers, pi and named lengths with + - * / ( ) cos sin sqrt atan2";
 
 struct Parser<'t> {
     text: &'t str,
@@ -152,6 +153,7 @@ impl<'t> Parser<'t> {
         match word {
             "pi" => Ok(std::f64::consts::PI),
             "cos" | "sin" | "sqrt" => self.call(word),
+            "atan2" => self.atan2(),
             _ => match self.lengths.iter().find(|(name, _)| name == word) {
                 Some((_, value)) => Ok(*value),
                 None => {
@@ -173,6 +175,17 @@ impl<'t> Parser<'t> {
             _ if argument < 0.0 => Err(self.mistake("square root of a negative number", "")),
             _ => Ok(argument.sqrt()),
         }
+    }
+
+    fn atan2(&mut self) -> Result<f64, Mistake> {
+        if !self.eat('(') {
+            return Err(self.mistake("`atan2` needs its arguments in ( )", ""));
+        }
+        let y = self.sum()?;
+        if !self.eat(',') {
+            return Err(self.mistake("`atan2` takes two arguments", ""));
+        }
+        Ok(y.atan2(self.closed()?))
     }
 
     fn unknown(&self, word: &str) -> Mistake {

@@ -1,7 +1,8 @@
 //! From the text of a robot description to a checked [`Description`].
 //!
-//! Reading collects [`Diagnostic`]s and goes on; [`check`] decides. URDF and modified
-//! Denavit-Hartenberg tables end in the same type; nothing after this module reads text.
+//! Reading collects [`Diagnostic`]s and goes on; [`check`] decides. URDF, modified
+//! Denavit-Hartenberg tables and SYMORO's `.par` end in the same type; nothing after this module
+//! reads text.
 
 pub mod angle;
 pub mod check;
@@ -13,6 +14,7 @@ mod findings;
 pub mod identifier;
 #[cfg(test)]
 mod never_panics;
+mod par;
 mod source;
 mod suggest;
 mod toml;
@@ -26,7 +28,7 @@ pub use source::Kind;
 use findings::finding;
 use std::path::Path;
 
-/// Reads a robot from a file: `.urdf`, or `.toml` (which may name a URDF beside it).
+/// Reads a robot from a file: `.urdf`, `.par`, or `.toml` (which may name a URDF beside it).
 ///
 /// # Errors
 /// Every mistake that was found, in the order of the text; warnings are in the description.
@@ -85,5 +87,6 @@ pub fn read_text(
     match kind {
         Kind::Urdf => toml::read_bare(text, file),
         Kind::Toml => toml::read(text, file, load),
+        Kind::Par => par::read(text, file),
     }
 }

@@ -31,6 +31,25 @@ const URDF: &str = r#"<?xml version="1.0"?>
 </robot>
 "#;
 
+const PAR: &str = "(* Robotname = 'arm' *)
+NL = 3
+NJ = 3
+Type = 1
+is_floating = 0
+D3 = 0.4
+ant = {0,1,
+  1}
+Sigma = {0,1,2}
+alpha = {0,Pi/2,-atan2(1,2)}
+d = {0,D3*cos(Pi/3),(D3 + 0.1)/2}
+theta = {th1 - Pi/2,0,0}
+XX = {1,XX2,0}
+M = {2.5,M2,0}
+FV = {FV1,0.1,0}
+FX = {FX1,0,0}
+G = {0,0,G3}
+";
+
 const TOML: &str = r#"name = "arm"
 gravity = [0, 0, -9.81]
 effects = ["viscous", { kind = "coulomb", smoothing = 0.05 }]
@@ -168,6 +187,7 @@ fn read_as_anything(text: &str) {
     for (read, kind) in [
         (text, Kind::Urdf),
         (text, Kind::Toml),
+        (text, Kind::Par),
         (COMPANION, Kind::Toml),
     ] {
         if let Err(errors) = read_text(read, "any", kind, &load) {
@@ -184,6 +204,7 @@ fn read_text_unedited_samples_are_descriptions() {
     for (text, kind) in [
         (urdf.as_str(), Kind::Urdf),
         (TOML, Kind::Toml),
+        (PAR, Kind::Par),
         (COMPANION, Kind::Toml),
     ] {
         let read = read_text(text, "sample", kind, &load);
@@ -207,6 +228,11 @@ proptest! {
     #[test]
     fn read_text_edited_toml_does_not_panic(edits in edits()) {
         read_as_anything(&edited(TOML, &edits));
+    }
+
+    #[test]
+    fn read_text_edited_par_does_not_panic(edits in edits()) {
+        read_as_anything(&edited(PAR, &edits));
     }
 
     #[test]

@@ -17,6 +17,8 @@ pub enum Kind {
     Urdf,
     /// TOML: a modified Denavit-Hartenberg table, or the companion of a URDF.
     Toml,
+    /// SYMORO's `.par`.
+    Par,
 }
 
 impl Kind {
@@ -29,10 +31,7 @@ impl Kind {
         match extension.to_ascii_lowercase().as_str() {
             "urdf" => Ok(Kind::Urdf),
             "toml" => Ok(Kind::Toml),
-            "par" => Err(
-                finding(code::FILE_FORMAT, "SYMORO .par import is not available yet")
-                    .help("write the table as [[joint]] rows in a .toml file"),
-            ),
+            "par" => Ok(Kind::Par),
             "xacro" => Err(finding(code::XACRO, "this is a xacro file, not a URDF")
                 .help("run `xacro robot.xacro > robot.urdf` and read the result")),
             _ if text.trim_start().starts_with('<') => Ok(Kind::Urdf),
@@ -41,7 +40,7 @@ impl Kind {
                 code::FILE_FORMAT,
                 "not a robot description that can be read",
             )
-            .help("robots are .urdf or .toml files")),
+            .help("robots are .urdf, .toml or .par files")),
         }
     }
 }

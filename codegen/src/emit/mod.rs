@@ -11,6 +11,7 @@ pub mod c;
 pub mod function;
 pub mod language;
 pub mod naming;
+pub mod par;
 pub mod python;
 pub mod rust;
 pub mod signals;
@@ -21,6 +22,7 @@ mod text;
 
 pub use c::{c, c_in_one};
 pub use language::Language;
+pub use par::{ParError, par};
 pub use python::python;
 pub use rust::index::index;
 pub use rust::rust;

@@ -2,7 +2,7 @@
 
 use super::frames::Axis;
 use super::pose::{Pose, about_x, about_z};
-use super::{Body, JointKind};
+use super::{Body, JointKind, Standard};
 use crate::describe::{MdhRow, Motion};
 use crate::expr::Angle;
 use nalgebra::Vector3;
@@ -30,7 +30,7 @@ pub fn axes(rows: &[MdhRow]) -> Vec<Axis> {
         let body = Body {
             name: row.name.clone(),
             pose,
-            inertial: None,
+            inertial: row.inertial.map(Standard::from_values),
         };
         axes.push(Axis {
             name: row.name.clone(),

@@ -29,6 +29,16 @@ impl Standard {
         }
     }
 
+    /// From the ten values in the order of [`NAMES`].
+    pub fn from_values(values: [f64; 10]) -> Standard {
+        let [xx, xy, xz, yy, yz, zz, mx, my, mz, mass] = values;
+        Standard {
+            inertia: Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz),
+            moment: Vector3::new(mx, my, mz),
+            mass,
+        }
+    }
+
     /// From a URDF's values about the centre of mass to the frame of its link
     /// (parallel-axis theorem).
     pub fn from_urdf(inertial: &UrdfInertial) -> Standard {

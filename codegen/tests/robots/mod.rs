@@ -58,6 +58,7 @@ pub fn description(
             d: number(&frame["d"]),
             theta: number(&frame["theta"]),
             r: number(&frame["r"]),
+            inertial: None,
             limits: Limits::default(),
             span: Span::default(),
         })

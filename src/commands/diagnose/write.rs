@@ -72,6 +72,12 @@ pub fn summary(path: &Path, diagnosis: &Diagnosis, extension: &Extension) -> Str
 
 /// The description as a document: its own TOML, or a companion of its URDF.
 fn document(texts: &Texts) -> Result<DocumentMut, Failure> {
+    if texts.is_par() {
+        return Err(Failure::Usage {
+            message: "a .par cannot hold the effects that a diagnosis finds".into(),
+            help: "write its table as [[joint]] rows in a .toml, and diagnose with that".into(),
+        });
+    }
     if !texts.is_toml() {
         return Ok(DocumentMut::new());
     }

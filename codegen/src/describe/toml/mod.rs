@@ -18,11 +18,12 @@ mod tests;
 
 use super::check;
 use super::code;
-use super::description::Description;
-use super::diagnostic::Diagnostic;
+use super::description::{Description, EffectSpec};
+use super::diagnostic::{Diagnostic, Span};
 use super::findings::{Finding, Findings, finding};
 use super::identifier;
 use super::source;
+use crate::catalogue::EffectKind;
 use ::toml::de::DeTable;
 use frame::Frame;
 use rest::Rest;
@@ -31,6 +32,11 @@ use table::Table;
 
 /// Largest TOML that is read, bytes.
 const MAX_BYTES: usize = 4 << 20;
+
+/// An effect with its default shape on a joint.
+pub(super) fn plain_effect(kind: EffectKind, joint: &str, span: Span) -> EffectSpec {
+    effects::Wanted::plain(kind, span).on(joint)
+}
 
 type Load<'l> = &'l dyn Fn(&str) -> Result<String, String>;
 
@@ -157,7 +163,7 @@ fn assemble(
 }
 
 /// SHA-256 of the texts one after the other, as `cat` and `sha256sum` give it.
-fn hash(texts: &[&str]) -> String {
+pub(super) fn hash(texts: &[&str]) -> String {
     let mut hasher = Sha256::new();
     for text in texts {
         hasher.update(text.as_bytes());

@@ -76,6 +76,7 @@ impl RowReader<'_, '_> {
             d: self.length("d", to),
             theta: self.angle("theta", &name, to),
             r: self.length("r", to),
+            inertial: None,
             limits: joint::limits(&mut self.table, to),
             name,
             motion,
