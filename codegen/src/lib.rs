@@ -14,6 +14,7 @@ pub mod emit;
 pub mod expr;
 pub mod knowledge;
 pub mod mechanism;
+pub mod placement;
 pub mod robot;
 pub mod source;
 

@@ -5,6 +5,7 @@ use crate::derive::{self, ParameterKind};
 use crate::describe::Description;
 use crate::expr::{Expr, Graph, Operations};
 use crate::mechanism::Mechanism;
+use crate::placement;
 
 /// One non-zero entry of an output.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -86,8 +87,10 @@ impl Robot {
     pub fn of(description: Description, mechanism: Mechanism) -> Result<Robot, BaseError> {
         let mut graph = Graph::new();
         let standard = derive::standard(&mut graph, &mechanism);
-        let (ends, standard) = (standard.ends, standard.parameters);
-        let base = base::parameters(&mut graph, &mechanism, standard, &description)?;
+        let (ends, mut motions) = (standard.ends, standard.motions);
+        let standard = standard.parameters;
+        let mut base = base::parameters(&mut graph, &mechanism, standard, &description)?;
+        placement::cheapest(&mut graph, &mechanism, &mut motions, &mut base.parameters);
         Ok(Robot {
             description,
             mechanism,

@@ -70,6 +70,8 @@ pub struct StandardModel {
     pub parameters: Vec<Standard>,
     /// Number of nodes after each link: what belongs to link k lies between ends k-1 and k.
     pub ends: Vec<usize>,
+    /// The motions of the links.
+    pub motions: Motions,
 }
 
 /// All standard parameters of a mechanism. Link by link: its motion, then its columns, so that
@@ -84,6 +86,7 @@ pub fn standard(graph: &mut Graph, mechanism: &Mechanism) -> StandardModel {
         inertial(graph, &motions, link, &mut model.parameters);
         model.ends.push(graph.nodes().len());
     }
+    model.motions = motions;
     let kinds: Vec<JointKind> = mechanism.joints.iter().map(|joint| joint.kind).collect();
     for effect in &mechanism.effects {
         model

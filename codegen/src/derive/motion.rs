@@ -38,13 +38,14 @@ pub struct Mover {
 }
 
 /// The motions of the links, from the base outwards.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Motions {
     /// Per link.
     pub links: Vec<Motion>,
     /// Per link, the joints from the base to the link's own.
     pub movers: Vec<Vec<Mover>>,
-    rotator: Rotator,
+    /// What was turned by which angle so far.
+    pub rotator: Rotator,
 }
 
 impl Motions {

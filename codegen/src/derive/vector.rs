@@ -82,6 +82,24 @@ pub fn into_frame(
     [x, y, z]
 }
 
+/// Components in the frame before those turns, of a vector given after them.
+pub fn out_of_frame(
+    graph: &mut Graph,
+    rotator: &mut Rotator,
+    vector: Vec3,
+    (gamma, alpha, theta): (Angle, Angle, &AngleSum),
+) -> Vec3 {
+    let none = AngleSum::constant(Angle::ZERO);
+    let turned = into_frame(
+        graph,
+        rotator,
+        vector,
+        (Angle::ZERO, Angle::ZERO, &theta.negated()),
+    );
+    let tilted = into_frame(graph, rotator, turned, (Angle::ZERO, -alpha, &none));
+    into_frame(graph, rotator, tilted, (-gamma, Angle::ZERO, &none))
+}
+
 fn about_z(
     graph: &mut Graph,
     rotator: &mut Rotator,

@@ -1,0 +1,132 @@
+//! Screws and wrenches in the frames between a link and the base.
+
+use crate::derive::body;
+use crate::derive::motion::{Motions, Mover};
+use crate::derive::vector::{Screw, add, constant, cross, out_of_frame};
+use crate::expr::{AngleSum, Graph, Input};
+use crate::mechanism::{JointKind, Mechanism};
+
+/// A frame on the way from a link to the base.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Frame {
+    /// The frame of a link.
+    Link(usize),
+    /// The axes of a link's antecedent at the place of the link's own joint: turned back, not yet
+    /// moved back.
+    Turned(usize),
+}
+
+/// The frames from a link to the base, the link's own first.
+pub fn path(mechanism: &Mechanism, link: usize) -> Vec<Frame> {
+    let mut path = vec![];
+    for &joint in mechanism.chain(link).iter().rev() {
+        path.push(Frame::Link(joint));
+        if mechanism.joints[joint].parent.is_some() {
+            path.push(Frame::Turned(joint));
+        }
+    }
+    path
+}
+
+/// The joints that move a frame, with their screws there.
+pub fn movers(
+    graph: &mut Graph,
+    mechanism: &Mechanism,
+    motions: &Motions,
+    frame: Frame,
+) -> Vec<Mover> {
+    let joint = match frame {
+        Frame::Link(link) => return motions.movers[link].clone(),
+        Frame::Turned(joint) => &mechanism.joints[joint],
+    };
+    let Some(parent) = joint.parent else {
+        return vec![];
+    };
+    let position = constant(graph, joint.position);
+    let mut moved = |screw: &Screw| {
+        let swept = cross(graph, screw.angular, position);
+        let linear = add(graph, screw.linear, swept);
+        Screw { linear, ..*screw }
+    };
+    let above = motions.movers[parent].iter();
+    above
+        .map(|mover| Mover {
+            joint: mover.joint,
+            screw: moved(&mover.screw),
+            rate: moved(&mover.rate),
+        })
+        .collect()
+}
+
+/// What one unit of a parameter does to its link.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Share {
+    /// The wrench of inertia and gravity, for D.
+    Wrench,
+    /// The momentum, for P and the kinetic part of R.
+    Momentum,
+    /// The wrench against gravity, for the potential part of R.
+    Weight,
+}
+
+/// The share of a parameter in every frame of the path of its link.
+pub fn shares(
+    graph: &mut Graph,
+    mechanism: &Mechanism,
+    motions: &mut Motions,
+    (link, index): (usize, usize),
+    share: Share,
+) -> Vec<Screw> {
+    let motion = motions.links[link];
+    let mut screw = match share {
+        Share::Wrench => body::wrench(graph, &motion, index),
+        Share::Momentum => body::momentum(graph, &motion, index),
+        Share::Weight => body::weight(graph, &motion, index),
+    };
+    let mut screws = vec![];
+    for frame in path(mechanism, link) {
+        if let Frame::Turned(joint) = frame {
+            screw = turned(graph, mechanism, motions, joint, screw);
+        }
+        screws.push(screw);
+        if let Frame::Turned(joint) = frame {
+            let position = constant(graph, mechanism.joints[joint].position);
+            let lever = cross(graph, position, screw.linear);
+            screw.angular = add(graph, screw.angular, lever);
+        }
+        // The next frame of the path is the antecedent's own.
+        if let (Frame::Turned(_), Some(last)) = (frame, screws.last()) {
+            debug_assert_eq!(last.linear, screw.linear);
+        }
+    }
+    screws
+}
+
+/// A wrench in a link's frame, in the axes of the antecedent.
+fn turned(
+    graph: &mut Graph,
+    mechanism: &Mechanism,
+    motions: &mut Motions,
+    index: usize,
+    wrench: Screw,
+) -> Screw {
+    let joint = &mechanism.joints[index];
+    let (mut moment, force) = (wrench.angular, wrench.linear);
+    let theta = match joint.kind {
+        JointKind::Revolute => AngleSum::joint(index, joint.theta),
+        JointKind::Prismatic => AngleSum::constant(joint.theta),
+    };
+    if joint.kind == JointKind::Prismatic {
+        let (zero, q) = (graph.zero(), graph.input(Input::Q(index)));
+        let lever = cross(graph, [zero, zero, q], force);
+        moment = add(graph, moment, lever);
+    }
+    let mut back = |vector| {
+        let angles = (joint.gamma, joint.alpha, &theta);
+        out_of_frame(graph, &mut motions.rotator, vector, angles)
+    };
+    Screw {
+        angular: back(moment),
+        linear: back(force),
+    }
+}
