@@ -26,7 +26,8 @@ pub fn choose(graph: &Graph, entries: &[Entry], fixed: &[Expr]) -> Vec<usize> {
     for _ in 0..ROUNDS {
         let before = search.cost;
         for (group, form) in &moves {
-            search.attempt(group, *form);
+            search.attempt(group, *form, Reach::There);
+            search.attempt(group, *form, Reach::Last);
         }
         if search.cost == before {
             break;
@@ -63,6 +64,15 @@ fn moves(entries: &[Entry]) -> Vec<(Vec<usize>, usize)> {
     moves
 }
 
+/// What a move does with the entries of a group whose joint does not move the frame.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Reach {
+    /// They stay.
+    There,
+    /// They take the last form they have, in the joint's own frame.
+    Last,
+}
+
 /// Operations that the chosen forms need, each shared node once.
 struct Search<'a> {
     graph: &'a Graph,
@@ -91,12 +101,14 @@ impl<'a> Search<'a> {
     }
 
     /// Gives the group a form where it has it; undone unless that saves operations.
-    fn attempt(&mut self, group: &[usize], form: usize) {
+    fn attempt(&mut self, group: &[usize], form: usize, reach: Reach) {
         let before = self.cost;
         let mut changed = vec![];
         for &index in group {
             let (entry, old) = (&self.entries[index], self.chosen[index]);
-            if form < entry.forms.len() && form != old {
+            let last = entry.forms.len() - 1;
+            let form = if reach == Reach::Last { form.min(last) } else { form };
+            if form <= last && form != old {
                 changed.push((index, old));
                 self.give(index, form);
             }
