@@ -13,6 +13,7 @@ use crate::base::BaseParameter;
 use crate::derive::ParameterKind;
 use crate::derive::explicit::pairing;
 use crate::derive::motion::{Motions, Mover};
+use crate::derive::vector::Screw;
 use crate::expr::{Expr, Graph};
 use crate::mechanism::Mechanism;
 use search::Entry;
@@ -86,7 +87,7 @@ impl Frames<'_> {
         graph: &mut Graph,
         column: Column,
         share: Share,
-        of: fn(&Mover) -> &crate::derive::vector::Screw,
+        of: fn(&Mover) -> &Screw,
     ) -> impl Fn(usize) -> Vec<Expr> + use<> {
         let key = (column.link, column.index);
         let shares = shares(graph, self.mechanism, self.motions, key, share);
@@ -121,7 +122,7 @@ fn explicit(
             });
         }
     }
-    let chosen = search::choose(graph, &entries, &[]);
+    let chosen = search::choose(graph, &entries);
     let mut values = entries
         .iter()
         .zip(chosen)
@@ -167,7 +168,7 @@ fn implicit(
             }
         }
     }
-    let chosen = search::choose(graph, &entries, &[]);
+    let chosen = search::choose(graph, &entries);
     let values: Vec<Expr> = entries
         .iter()
         .zip(chosen)

@@ -15,13 +15,13 @@ pub struct Entry {
     pub forms: Vec<Expr>,
 }
 
-/// Rounds over all moves; the second finds little and the third next to nothing.
+/// Most rounds over all moves; the second finds little and the third next to nothing.
 const ROUNDS: usize = 4;
 
 /// The form of every entry. From the link's own frame on, whatever saves operations is done:
 /// for a whole link, a column, a row of a link, one entry, in this order.
-pub fn choose(graph: &Graph, entries: &[Entry], fixed: &[Expr]) -> Vec<usize> {
-    let mut search = Search::new(graph, entries, fixed);
+pub fn choose(graph: &Graph, entries: &[Entry]) -> Vec<usize> {
+    let mut search = Search::new(graph, entries);
     let moves = moves(entries);
     for _ in 0..ROUNDS {
         let before = search.cost;
@@ -83,7 +83,7 @@ struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    fn new(graph: &'a Graph, entries: &'a [Entry], fixed: &[Expr]) -> Search<'a> {
+    fn new(graph: &'a Graph, entries: &'a [Entry]) -> Search<'a> {
         let mut search = Search {
             graph,
             entries,
@@ -93,9 +93,6 @@ impl<'a> Search<'a> {
         };
         for entry in entries {
             search.need(entry.forms[0].node());
-        }
-        for &value in fixed {
-            search.need(value.node());
         }
         search
     }
@@ -107,7 +104,11 @@ impl<'a> Search<'a> {
         for &index in group {
             let (entry, old) = (&self.entries[index], self.chosen[index]);
             let last = entry.forms.len() - 1;
-            let form = if reach == Reach::Last { form.min(last) } else { form };
+            let form = if reach == Reach::Last {
+                form.min(last)
+            } else {
+                form
+            };
             if form <= last && form != old {
                 changed.push((index, old));
                 self.give(index, form);

@@ -90,13 +90,10 @@ pub fn shares(
         }
         screws.push(screw);
         if let Frame::Turned(joint) = frame {
+            // On to the antecedent's own origin, where the path goes next.
             let position = constant(graph, mechanism.joints[joint].position);
             let lever = cross(graph, position, screw.linear);
             screw.angular = add(graph, screw.angular, lever);
-        }
-        // The next frame of the path is the antecedent's own.
-        if let (Frame::Turned(_), Some(last)) = (frame, screws.last()) {
-            debug_assert_eq!(last.linear, screw.linear);
         }
     }
     screws
