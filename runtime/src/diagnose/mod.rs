@@ -28,6 +28,7 @@ mod repeats;
 mod rest;
 mod screen;
 mod settled;
+mod shape;
 mod smooth;
 mod state;
 mod stepwise;
