@@ -40,8 +40,9 @@ fn map(smooth: &Smooth) -> Element {
             }
         }
     }
-    let title = |name: &str, of: &str| format!("{}, {}", short(name, 34), unit(of));
-    let (x_title, y_title) = (title(&x.name, &x.unit), title(&y.name, &y.unit));
+    // The frame is less high than wide.
+    let title = |name: &str, most: usize, of: &str| format!("{}, {}", short(name, most), unit(of));
+    let (x_title, y_title) = (title(&x.name, 34, &x.unit), title(&y.name, 22, &y.unit));
     let range = format!(
         "{}: torque from \u{2212}{} {u} (blue) to {} {u} (orange)",
         short(&smooth.joint, 40),
