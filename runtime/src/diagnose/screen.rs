@@ -4,7 +4,6 @@ use rayon::prelude::*;
 
 use super::catalogue::EntryKind;
 use super::joined::Joined;
-use super::shape::searched;
 use super::state::{Asking, Bench, State};
 use super::system::{Gain, Sparse, System};
 use super::track::Decimated;
@@ -180,4 +179,13 @@ impl Bench<'_> {
         }
         (along, square)
     }
+}
+
+/// Places of a shape that the grid varies.
+pub(super) fn searched(grid: &[Vec<f64>]) -> Vec<usize> {
+    let Some(first) = grid.first() else {
+        return Vec::new();
+    };
+    let varies = |place: &usize| grid.iter().any(|shape| shape[*place] != first[*place]);
+    (0..first.len()).filter(varies).collect()
 }

@@ -6,8 +6,8 @@
 
 use super::catalogue::EntryKind;
 use super::linear::dot;
-use super::screen::{Candidate, Contender};
-use super::shape::{largest, neighbours, searched};
+use super::screen::{Candidate, Contender, searched};
+use super::shape::{largest, neighbours};
 use super::state::State;
 use super::stepwise::{Named, Stepwise};
 

@@ -1,7 +1,7 @@
 //! The shapes of hypotheses: searched between the places of their grids.
 
 use super::catalogue::Hypothesis;
-use super::screen::Contender;
+use super::screen::{Contender, searched};
 use super::state::{Asking, Bench, State};
 
 /// Evaluations of a shape's refinement in each direction.
@@ -79,15 +79,6 @@ impl Bench<'_> {
         }
         best
     }
-}
-
-/// Places of a shape that the grid varies.
-pub(super) fn searched(grid: &[Vec<f64>]) -> Vec<usize> {
-    let Some(first) = grid.first() else {
-        return Vec::new();
-    };
-    let varies = |place: &usize| grid.iter().any(|shape| shape[*place] != first[*place]);
-    (0..first.len()).filter(varies).collect()
 }
 
 /// The values of a shape's place around `value` on the grid; `None` for whole numbers, which are
