@@ -61,6 +61,7 @@ fn drawn(name: &str) -> (&'static str, Vec<f64>) {
         "drive_saturation" => ("torque of the model, N m", vec![30.0]),
         "friction_drift" => ("time, s", vec![5.0]),
         "joint_elasticity" => ("time, s", vec![4.0, 0.1]),
+        "backlash" => ("time, s", vec![0.03]),
         _ => ("time, s", vec![]),
     }
 }

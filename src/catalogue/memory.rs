@@ -87,8 +87,9 @@ pub(super) static JOINT_ELASTICITY: Effect = Effect {
     entry: Entry {
         name: "joint_elasticity",
         meaning: "a gear that yields: the link follows the drive behind a resonance",
-        formula: "d(tau_links)/dq_j along -CE y and its time derivatives, y'' + 2 damping w y' + \
-                  w^2 (y - tau_links_j) = 0, w = 2 pi f",
+        formula: "d(tau_links)/dq_j along -CE k z and its time derivatives, M z'' + (C + d) z' + \
+                  (K + k) z = tau_links_j: M, C, K of the link at each pose, k and d such that one \
+                  with the median M swings with f and damping",
         parameters: &[("CE", "rad/(N m)")],
         shape: &[("f", "Hz"), ("damping", "1")],
         confused_with: &["rotor_inertia", "time_shift", "link_length"],
@@ -144,7 +145,9 @@ pub(super) static BACKLASH: Effect = Effect {
     entry: Entry {
         name: "backlash",
         meaning: "play of a gear: the link lies behind or before the drive by half the gap",
-        formula: "d(tau_links)/dq_j along -gap/2 sgn(tau_links_j) and its time derivatives",
+        formula: "d(tau_links)/dq_j along -gap z/play and its time derivatives, M z'' + C z' + K z = \
+                  tau_links_j between stops at +-play/2 that do not throw back; gap and play agree \
+                  where the model is right",
         parameters: &[("gap", "rad")],
         shape: &[("play", "rad")],
         confused_with: &["presliding", "stribeck", "joint_elasticity"],

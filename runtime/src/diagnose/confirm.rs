@@ -11,9 +11,9 @@ use super::stepwise::{Named, Stepwise};
 /// Share of the gain that the columns promise on another motion which must be there.
 const CONFIRMED: f64 = 1.0 / 3.0;
 
-/// Times the root of the promise that a gain may be short: two and a half standard deviations of its
-/// own noise, which is twice that root;
-/// what a promise is too small to decide, the training log decides.
+/// Times the root of the promise by which a gain may be short: two and a half standard deviations of
+/// its own noise, which is twice that root. What a promise is too small to decide, the training log
+/// decides.
 const DOUBT: f64 = 5.0;
 
 /// Standard deviations by which a column that the noise of its motion swamps must still go along with
