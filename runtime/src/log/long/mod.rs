@@ -5,6 +5,7 @@
 //! segment -> checks. Everything is done to each row as it is done in memory; what is judged by a
 //! signal's usual size is judged within segments of half a minute and more.
 
+mod place;
 mod segments;
 mod spool;
 mod spooling;

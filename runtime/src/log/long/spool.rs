@@ -1,12 +1,12 @@
 //! Columns of numbers in a temporary file that has no name and goes with the process.
 
 use std::fs::File;
-use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::io::{self, Write};
 use std::ops::Range;
-use std::sync::{Mutex, PoisonError};
 
 use super::super::error::{Found, Problem};
 use super::super::stamps::{Ends, Stamps};
+use super::place;
 
 /// Rows per block of the file; within a block, column follows column.
 const BLOCK: usize = 4096;
@@ -14,7 +14,7 @@ const BLOCK: usize = 4096;
 /// Columns on disk; the first one holds the stamps.
 #[derive(Debug)]
 pub(super) struct Spool {
-    file: Mutex<File>,
+    file: File,
     columns: usize,
     pub rows: usize,
     /// The first stamp of every block.
@@ -36,39 +36,35 @@ impl Spool {
         mut values: Vec<f64>,
     ) -> Found<Vec<f64>> {
         values.resize(rows.len(), 0.0);
-        self.each_piece(column, rows, |file, piece| {
+        self.each_piece(column, rows, |at, piece| {
             let values = values.get_mut(piece).unwrap_or_default();
-            file.read_exact(bytemuck::cast_slice_mut(values))
+            place::read(&self.file, at, bytemuck::cast_slice_mut(values))
         })?;
         Ok(values)
     }
 
     /// Replaces the values of a column from a row on.
     pub fn write(&self, column: usize, row: usize, values: &[f64]) -> Found<()> {
-        self.each_piece(column, row..row + values.len(), |file, piece| {
+        self.each_piece(column, row..row + values.len(), |at, piece| {
             let values = values.get(piece).unwrap_or_default();
-            file.write_all(bytemuck::cast_slice(values))
+            place::write(&self.file, at, bytemuck::cast_slice(values))
         })
     }
 
-    /// Leads the file to every stretch of it that holds these rows of a column.
+    /// Every stretch of the file that holds these rows of a column: its byte, and which of the rows.
     fn each_piece(
         &self,
         column: usize,
         rows: Range<usize>,
-        mut at: impl FnMut(&mut File, Range<usize>) -> io::Result<()>,
+        mut with: impl FnMut(u64, Range<usize>) -> io::Result<()>,
     ) -> Found<()> {
         let mut row = rows.start;
-        let mut file = self.file.lock().unwrap_or_else(PoisonError::into_inner);
         while row < rows.end {
             let (block, within) = (row / BLOCK, row % BLOCK);
             let len = (BLOCK - within).min(rows.end - row);
-            let place = ((block * self.columns + column) * BLOCK + within) * size_of::<f64>();
+            let value = (block * self.columns + column) * BLOCK + within;
             let piece = row - rows.start..row - rows.start + len;
-            let moved = file.seek(SeekFrom::Start(place as u64));
-            moved
-                .and_then(|_| at(&mut file, piece))
-                .map_err(Problem::Spool)?;
+            with((value * size_of::<f64>()) as u64, piece).map_err(Problem::Spool)?;
             row += len;
         }
         Ok(())
@@ -122,7 +118,7 @@ impl Spooler {
         let file = tempfile::tempfile().map_err(Problem::Spool)?;
         Ok(Spooler {
             spool: Spool {
-                file: Mutex::new(file),
+                file,
                 columns,
                 rows: 0,
                 index: Vec::new(),
@@ -177,13 +173,8 @@ impl Spooler {
         self.spool.ends.last = last;
         self.spool.ends.len += self.filled;
         self.filled = 0;
-        let file = self
-            .spool
-            .file
-            .get_mut()
-            .unwrap_or_else(PoisonError::into_inner);
-        file.write_all(bytemuck::cast_slice(&self.block))
-            .map_err(Problem::Spool)
+        let block = bytemuck::cast_slice(&self.block);
+        self.spool.file.write_all(block).map_err(Problem::Spool)
     }
 
     /// The spool with all rows.
