@@ -171,7 +171,8 @@ fn last_x(axis: &Axis, parent: Option<&Pose>) -> Vector3<f64> {
     let line = if near.norm() >= NEARLY_PARALLEL {
         near.normalize()
     } else {
-        parent_x
+        // Square to this axis also where it is a little tilted against the antecedent's.
+        (parent_x - axis.z() * parent_x.dot(&axis.z())).normalize()
     };
     let theta = line
         .cross(&axis.x())
@@ -235,9 +236,10 @@ fn joint(
 fn euler(pose: &Pose) -> [f64; 3] {
     let r = &pose.rotation;
     let (sin, cos) = (r[(0, 2)].hypot(r[(1, 2)]), r[(2, 2)]);
-    if sin < SNAP {
-        let alpha: f64 = if cos > 0.0 { 0.0 } else { std::f64::consts::PI };
-        return [0.0, alpha, (r[(1, 0)] * cos.signum()).atan2(r[(0, 0)])];
+    if sin.atan2(cos.abs()) <= SNAP {
+        // The tilt that is left is snapped, and reported, by whoever asks.
+        let theta = (r[(1, 0)] * cos.signum()).atan2(r[(0, 0)]);
+        return [0.0, sin.atan2(cos), theta];
     }
     // z of the new frame is (sin gamma sin alpha, -cos gamma sin alpha, cos alpha).
     let mut gamma = r[(0, 2)].atan2(-r[(1, 2)]);
