@@ -44,8 +44,11 @@ pub fn split(w: &DMatrix<f64>, priority: &[usize], all: &[Standard]) -> Result<S
             gap: f64::INFINITY,
         });
     }
-    let scaled = DMatrix::from_columns(&columns);
-    let (rank, gap, threshold) = numeric_rank(&scaled);
+    // An orthogonal transformation changes neither lengths nor angles of the columns: their
+    // triangle tells all that many samples do.
+    let triangle = DMatrix::from_columns(&columns).qr().r();
+    let (rank, gap, threshold) = numeric_rank(&triangle);
+    let columns: Vec<DVector<f64>> = triangle.column_iter().map(DVector::from).collect();
     let residuals = orthogonalise(&columns, threshold);
     let mut split = Split {
         kept: vec![],
@@ -67,9 +70,8 @@ pub fn split(w: &DMatrix<f64>, priority: &[usize], all: &[Standard]) -> Result<S
 }
 
 /// The rank at the largest drop of the singular values, that drop, and a threshold between.
-fn numeric_rank(scaled: &DMatrix<f64>) -> (usize, f64, f64) {
-    let r = scaled.clone().qr().r();
-    let mut sigma: Vec<f64> = r.singular_values().iter().copied().collect();
+fn numeric_rank(triangle: &DMatrix<f64>) -> (usize, f64, f64) {
+    let mut sigma: Vec<f64> = triangle.singular_values().iter().copied().collect();
     sigma.sort_by(|a, b| b.total_cmp(a));
     let floor = f64::EPSILON * sigma[0];
     sigma.push(floor);

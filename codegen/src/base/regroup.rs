@@ -52,9 +52,10 @@ pub fn regroup(w: &DMatrix<f64>, split: &Split, standard: Vec<Standard>) -> Vec<
 /// W_dependent = W_kept C by least squares, cleaned of rounding.
 pub fn coefficients(w: &DMatrix<f64>, split: &Split) -> DMatrix<f64> {
     let kept = w.select_columns(&split.kept);
-    let dependent = w.select_columns(&split.dependent);
+    let mut projected = w.select_columns(&split.dependent);
     let qr = kept.qr();
-    let projected = qr.q().transpose() * dependent;
+    qr.q_tr_mul(&mut projected);
+    let projected = projected.rows(0, split.kept.len());
     let solution = qr.r().solve_upper_triangular(&projected);
     let mut c = solution.unwrap_or_else(|| DMatrix::zeros(split.kept.len(), split.dependent.len()));
     c.apply(|x| {

@@ -5,15 +5,12 @@ use nalgebra::DMatrix;
 
 use super::lengths::{self, Length};
 use super::rank::Split;
-use super::symbolic::Products;
+use super::symbolic::{Products, ROBOTS};
 use super::{BaseParameter, names, regroup, sample};
 use crate::derive;
 use crate::describe::{Description, ScaledParameter};
 use crate::expr::Graph;
 use crate::mechanism::Mechanism;
-
-/// Robots with other lengths that a law has to hold for.
-const OTHERS: usize = 2;
 
 /// Writes the relation of every parameter; coefficients that no lengths explain stay numbers.
 pub fn write(
@@ -37,6 +34,7 @@ struct Laws<'a> {
     standard: &'a [String],
     lengths: Vec<String>,
     products: Products,
+    /// Of the robots with other lengths; none where there are no lengths.
     others: Vec<DMatrix<f64>>,
 }
 
@@ -48,11 +46,12 @@ impl Laws<'_> {
         standard: &'a [String],
     ) -> Laws<'a> {
         let lengths = lengths::of(mechanism, description);
-        let mut samples: Vec<Vec<f64>> = vec![lengths.iter().map(|length| length.value).collect()];
-        let count = if lengths.is_empty() { 0 } else { OTHERS };
-        samples.extend((0..count).map(|robot| other_values(&lengths, robot)));
-        let others = samples[1..]
-            .iter()
+        let samples: [Vec<f64>; ROBOTS] = std::array::from_fn(|robot| match robot {
+            0 => lengths.iter().map(|length| length.value).collect(),
+            other => other_values(&lengths, other - 1),
+        });
+        let others = samples[1..].iter().filter(|_| !lengths.is_empty());
+        let others = others
             .map(|values| coefficients(&lengths::changed(mechanism, &lengths, values), split))
             .collect();
         Laws {
@@ -92,8 +91,13 @@ impl Laws<'_> {
         }
         let place = self.place(&self.split.kept, own)?;
         let other = self.place(&self.split.dependent, name)?;
-        let others = self.others.iter().map(|c| c[(place, other)]);
-        let values: Vec<f64> = [number].into_iter().chain(others).collect();
+        let values: [f64; ROBOTS] = std::array::from_fn(|robot| match robot {
+            0 => number,
+            robot => self
+                .others
+                .get(robot - 1)
+                .map_or(number, |c| c[(place, other)]),
+        });
         Some(self.products.polynomial(&values)?.text(&self.lengths))
     }
 

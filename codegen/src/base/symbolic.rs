@@ -4,14 +4,24 @@
 //! coefficient is taken on several robots that differ in their lengths alone, and a polynomial is
 //! believed if it gives the coefficient of every one of them.
 
-/// Lengths of the robot and of those that differ from it, one list per robot.
-pub type Samples<'a> = &'a [Vec<f64>];
+/// The robot, and those that differ from it in their lengths, without whose agreement a
+/// polynomial is not believed.
+pub const ROBOTS: usize = 3;
+
+/// Lengths of every robot, one list per robot.
+pub type Samples<'a> = &'a [Vec<f64>; ROBOTS];
+
+/// A value on every robot.
+type Values = [f64; ROBOTS];
 
 /// Relative agreement of a polynomial with coefficients that least squares found.
 const TOLERANCE: f64 = 1e-11;
 
-/// Factors of the terms of a sum, each with both signs. A term alone may have any half up to 4.
-const FACTORS: [f64; 3] = [1.0, 2.0, 0.5];
+/// Factors of the terms of a sum but its last.
+const FACTORS: [f64; 6] = [1.0, -1.0, 2.0, -2.0, 0.5, -0.5];
+
+/// The last term, or one alone, may have any half up to this.
+const LARGEST: i32 = 4;
 
 /// Products in a sum; more lengths than this have too many products to look for three at once.
 const MANY: usize = 40;
@@ -29,12 +39,28 @@ pub struct Polynomial(Vec<Term>);
 
 /// Products of lengths with their values on every robot, by degree from 0 to 3.
 #[derive(Clone, Debug)]
-pub struct Products(Vec<Vec<Product>>);
+pub struct Products(Vec<Degree>);
+
+/// The products of one degree, in the order in which they are preferred.
+#[derive(Clone, Debug)]
+struct Degree {
+    products: Vec<Product>,
+    /// Every product with every factor that a last term may have, by its value on the last robot,
+    /// whose lengths have no simple ratios.
+    multiples: Vec<Multiple>,
+}
 
 #[derive(Clone, Debug)]
 struct Product {
     lengths: Vec<usize>,
-    values: Vec<f64>,
+    values: Values,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Multiple {
+    value: f64,
+    product: usize,
+    factor: f64,
 }
 
 impl Products {
@@ -42,10 +68,10 @@ impl Products {
     pub fn new(samples: Samples<'_>) -> Products {
         let one = Product {
             lengths: vec![],
-            values: vec![1.0; samples.len()],
+            values: [1.0; ROBOTS],
         };
         let mut degrees = vec![vec![one]];
-        let count = samples.first().map_or(0, Vec::len);
+        let count = samples[0].len();
         for degree in 0..3 {
             let mut next = Vec::new();
             for product in &degrees[degree] {
@@ -54,15 +80,17 @@ impl Products {
             }
             degrees.push(next);
         }
-        Products(degrees)
+        Products(degrees.into_iter().map(Degree::new).collect())
     }
 
     /// The simplest polynomial with the given values on every robot: one product before a sum of
     /// two before a sum of three, low degrees first.
-    pub fn polynomial(&self, values: &[f64]) -> Option<Polynomial> {
-        let degrees = || self.0.iter().map(Vec::as_slice);
-        let alone = degrees().find_map(|products| sum(products, values, 1));
-        let sums = |count: usize| degrees().skip(1).find_map(move |p| sum(p, values, count));
+    pub fn polynomial(&self, values: &[f64; ROBOTS]) -> Option<Polynomial> {
+        let alone = self.0.iter().find_map(|degree| degree.sum(0, *values, 1));
+        let sums = |count: usize| {
+            let mut degrees = self.0.iter().skip(1);
+            degrees.find_map(|degree| degree.sum(0, *values, count))
+        };
         alone
             .or_else(|| sums(2))
             .or_else(|| sums(3))
@@ -70,15 +98,71 @@ impl Products {
     }
 }
 
+impl Degree {
+    fn new(products: Vec<Product>) -> Degree {
+        let halves = (-2 * LARGEST..=2 * LARGEST).filter(|&halves| halves != 0);
+        let factors: Vec<f64> = halves.map(|halves| f64::from(halves) / 2.0).collect();
+        let multiples = products.iter().enumerate().flat_map(|(index, product)| {
+            factors.iter().map(move |&factor| Multiple {
+                value: factor * product.values[ROBOTS - 1],
+                product: index,
+                factor,
+            })
+        });
+        let mut multiples: Vec<Multiple> = multiples.collect();
+        multiples.sort_by(|a, b| a.value.total_cmp(&b.value));
+        Degree {
+            products,
+            multiples,
+        }
+    }
+
+    /// `count` of the products from `first` on, with factors, that add up to the values.
+    fn sum(&self, first: usize, values: Values, count: usize) -> Option<Vec<Term>> {
+        if count == 1 {
+            return Some(vec![self.alone(first, values)?]);
+        }
+        if count > 2 && self.products.len() > MANY {
+            return None;
+        }
+        let products = self.products.iter().enumerate().skip(first);
+        products.into_iter().find_map(|(index, product)| {
+            FACTORS.iter().find_map(|&factor| {
+                let rest = std::array::from_fn(|k| values[k] - factor * product.values[k]);
+                let mut terms = self.sum(index + 1, rest, count - 1)?;
+                terms.insert(0, product.term(factor));
+                Some(terms)
+            })
+        })
+    }
+
+    /// The first of the products from `first` on that is the values, with its factor.
+    fn alone(&self, first: usize, values: Values) -> Option<Term> {
+        let (value, reach) = (values[ROBOTS - 1], reach(values[ROBOTS - 1]));
+        let start = self
+            .multiples
+            .partition_point(|one| one.value < value - reach);
+        let near = self.multiples[start..].iter();
+        near.take_while(|one| one.value <= value + reach)
+            .filter(|one| one.product >= first)
+            .filter(|one| self.products[one.product].is(values, one.factor))
+            .min_by_key(|one| one.product)
+            .map(|one| self.products[one.product].term(one.factor))
+    }
+}
+
+/// How far a polynomial may be from a coefficient.
+fn reach(value: f64) -> f64 {
+    TOLERANCE * value.abs().max(1.0)
+}
+
 impl Product {
     fn times(&self, length: usize, samples: Samples<'_>) -> Product {
         let mut lengths = self.lengths.clone();
         lengths.push(length);
-        let values = self.values.iter().zip(samples);
-        let values = values.map(|(value, sample)| value * sample[length]);
         Product {
             lengths,
-            values: values.collect(),
+            values: std::array::from_fn(|robot| self.values[robot] * samples[robot][length]),
         }
     }
 
@@ -87,38 +171,13 @@ impl Product {
         Term { factor, lengths }
     }
 
-    /// The factor that makes the product the given values: a half of a small integer.
-    fn factor(&self, values: &[f64]) -> Option<f64> {
-        let factor = (2.0 * values[0] / self.values[0]).round() / 2.0;
-        let small = factor != 0.0 && factor.abs() <= 4.0;
-        let mut pairs = values.iter().zip(&self.values);
-        let near = |(value, product): (&f64, &f64)| {
-            (value - factor * product).abs() <= TOLERANCE * value.abs().max(1.0)
-        };
-        (small && pairs.all(near)).then_some(factor)
+    /// Whether the product times the factor is the values, on every robot.
+    fn is(&self, values: Values, factor: f64) -> bool {
+        let pairs = values.iter().zip(self.values);
+        pairs
+            .into_iter()
+            .all(|(&value, product)| (value - factor * product).abs() <= reach(value))
     }
-}
-
-/// `count` of the products with factors that add up to the values.
-fn sum(products: &[Product], values: &[f64], count: usize) -> Option<Vec<Term>> {
-    if count == 1 {
-        let alone = |product: &Product| Some(vec![product.term(product.factor(values)?)]);
-        return products.iter().find_map(alone);
-    }
-    if count > 2 && products.len() > MANY {
-        return None;
-    }
-    products.iter().enumerate().find_map(|(index, product)| {
-        let signed = FACTORS.iter().flat_map(|&factor| [factor, -factor]);
-        signed.into_iter().find_map(|factor| {
-            let pairs = values.iter().zip(&product.values);
-            let rest: Vec<f64> = pairs.map(|(value, x)| value - factor * x).collect();
-            let others = sum(&products[index + 1..], &rest, count - 1)?;
-            let mut terms = vec![product.term(factor)];
-            terms.extend(others);
-            Some(terms)
-        })
-    })
 }
 
 impl Polynomial {
@@ -165,13 +224,13 @@ impl Term {
 mod tests {
     use super::*;
 
-    fn samples() -> Vec<Vec<f64>> {
-        vec![vec![0.5, 0.25], vec![0.7, 0.4], vec![1.1, 0.3]]
+    fn samples() -> [Vec<f64>; ROBOTS] {
+        [vec![0.5, 0.25], vec![0.7, 0.4], vec![1.1, 0.3]]
     }
 
     fn text(of: impl Fn(f64, f64) -> f64) -> Option<(bool, String)> {
         let samples = samples();
-        let values: Vec<f64> = samples.iter().map(|l| of(l[0], l[1])).collect();
+        let values = samples.each_ref().map(|l| of(l[0], l[1]));
         let names = ["d3".to_owned(), "r4".to_owned()];
         let found = Products::new(&samples).polynomial(&values)?;
         Some(found.text(&names))
