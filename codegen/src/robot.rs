@@ -42,6 +42,11 @@ impl Output {
         Output::Energy,
         Output::Power,
     ];
+
+    /// Whether it has a row for each joint; else it is one row.
+    pub fn is_matrix(self) -> bool {
+        !matches!(self, Output::Energy | Output::Power)
+    }
 }
 
 /// Operation counts for the inertial base columns.

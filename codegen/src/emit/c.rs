@@ -1,7 +1,7 @@
 //! C99: a header and a source without allocation, state, or dependency but `math.h`.
 
 use super::File;
-use super::function::{self, Body, Line, Target};
+use super::function::{self, Body, Line, Part, Target};
 use super::language::Language;
 use super::signature::{self, Signature, has_slip};
 use super::summary::summary;
@@ -17,7 +17,7 @@ const RESERVED: &str = "auto break case char const continue default do double el
     sin cos fabs tanh exp pow NAN INFINITY HUGE_VAL HUGE_VALF HUGE_VALL math_errhandling \
     MATH_ERRNO MATH_ERREXCEPT FP_NAN FP_INFINITE FP_ZERO FP_SUBNORMAL FP_NORMAL FP_ILOGB0 \
     FP_ILOGBNAN fpclassify isfinite isinf isnan isnormal signbit isgreater isless isunordered \
-    q qd qdd slip D P R h dh row column sign bell sliding clear asm unix linux";
+    q qd qdd slip live D P R h dh row column sign bell sliding clear asm unix linux";
 
 /// C as a [`Language`].
 struct C;
@@ -42,6 +42,14 @@ impl Language for C {
 
     fn number(&self, value: f64) -> String {
         number(value)
+    }
+
+    fn divides(&self) -> bool {
+        true
+    }
+
+    fn computes_trig(&self) -> bool {
+        true
     }
 
     fn call(&self, function: Function, x: &str, _: &str) -> String {
@@ -262,10 +270,56 @@ fn definition(robot: &Robot, signature: &Signature) -> String {
         argument: signature.name,
     };
     let body = function::body(robot, &[target], &C);
-    let mut text = format!("{}\n{{\n", prototype(robot, signature));
+    let mut text = String::new();
+    let mut calls = String::new();
+    if let [only] = body.parts.as_slice() {
+        calls = statements(only);
+    } else {
+        calls.push_str(&format!("    double live[{}];\n\n", body.live));
+        for (index, part) in body.parts.iter().enumerate() {
+            let name = format!("{}_{}", signature.name, index + 1);
+            text.push_str(&self::part(robot, signature, &name, body.live, part));
+            let given = [signals(robot, signature, part), vec!["live"], part.outputs()];
+            calls.push_str(&format!("    {name}({});\n", given.concat().join(", ")));
+        }
+    }
+    text.push_str(&format!("{}\n{{\n", prototype(robot, signature)));
     text.push_str(&unused(robot, signature, &body));
     text.push_str(&zeros(robot, signature));
-    for trig in &body.trig {
+    text.push_str(&calls);
+    text.push_str("}\n\n");
+    text
+}
+
+/// A part of a long function: it takes the signals that it reads, and the scratch array.
+fn part(robot: &Robot, signature: &Signature, name: &str, live: usize, part: &Part) -> String {
+    let upper = robot.mechanism.name.to_ascii_uppercase();
+    let inputs: String = (signals(robot, signature, part).iter())
+        .map(|signal| format!("const double {signal}[{upper}_JOINTS], "))
+        .collect();
+    let rows = match signature.matrix {
+        true => format!("[{upper}_JOINTS]"),
+        false => String::new(),
+    };
+    let outputs: String = (part.outputs().iter())
+        .map(|output| format!(", double {output}{rows}[{upper}_PARAMETERS]"))
+        .collect();
+    format!(
+        "static void {name}(\n    {inputs}double live[{live}]{outputs})\n{{\n{}}}\n\n",
+        statements(part)
+    )
+}
+
+/// The signals that a part reads, in the order of the function's own arguments.
+fn signals(robot: &Robot, signature: &Signature, part: &Part) -> Vec<&'static str> {
+    let slip = has_slip(robot).then_some(&"slip");
+    let all = signature.signals.iter().chain(slip).copied();
+    all.filter(|signal| is_read(signal, &part.inputs)).collect()
+}
+
+fn statements(part: &Part) -> String {
+    let mut text = String::new();
+    for trig in &part.trig {
         let angle = trig.code(|joint| format!("q[{joint}]"), number);
         for (name, function) in [(&trig.sine, "sin"), (&trig.cosine, "cos")] {
             if let Some(name) = name {
@@ -273,27 +327,28 @@ fn definition(robot: &Robot, signature: &Signature) -> String {
             }
         }
     }
-    text.extend(body.lines.iter().map(line));
-    text.push_str("}\n\n");
+    text.extend(part.lines.iter().map(line));
     text
 }
 
 /// Says of arguments that are not read that this is meant.
 fn unused(robot: &Robot, signature: &Signature, body: &Body) -> String {
-    let read = |signal: &str| {
-        body.inputs.iter().any(|input| match input {
-            Input::Q(_) => signal == "q",
-            Input::Qd(_) => signal == "qd",
-            Input::Qdd(_) => signal == "qdd",
-            Input::Slip(_) => signal == "slip" || signal == "qd",
-        })
-    };
+    let inputs = body.inputs();
     let slip = has_slip(robot).then_some(&"slip");
     let signals = signature.signals.iter().chain(slip);
-    let unread = signals.filter(|signal| !read(signal));
+    let unread = signals.filter(|signal| !is_read(signal, &inputs));
     unread
         .map(|signal| format!("    (void)({signal});\n"))
         .collect()
+}
+
+fn is_read(signal: &str, inputs: &[Input]) -> bool {
+    inputs.iter().any(|input| match input {
+        Input::Q(_) => signal == "q",
+        Input::Qd(_) => signal == "qd",
+        Input::Qdd(_) => signal == "qdd",
+        Input::Slip(_) => signal == "slip" || signal == "qd",
+    })
 }
 
 fn zeros(robot: &Robot, signature: &Signature) -> String {
@@ -312,6 +367,8 @@ fn zeros(robot: &Robot, signature: &Signature) -> String {
 fn line(line: &Line) -> String {
     match line {
         Line::Section(title) => format!("\n    /* {} */\n", remark(title)),
+        Line::Load { name, place } => format!("    const double {name} = live[{place}];\n"),
+        Line::Keep { name, place } => format!("    live[{place}] = {name};\n"),
         Line::Constant { name, value } => {
             format!("    const double {name} = {};\n", number(*value))
         }

@@ -1,12 +1,13 @@
 //! One emitted function, language by language the same: sines and cosines, constants, then body by
-//! body what is computed and what is stored.
+//! body what is computed and what is stored. A long one comes in parts ([`super::parts`]).
 
 use super::angles::{self, Trig};
 use super::language::Language;
+use super::parts;
 use super::statement::Writer;
 use crate::base::BaseParameter;
 use crate::derive::ParameterKind;
-use crate::expr::{Expr, Input, Node, schedule};
+use crate::expr::{Expr, Graph, Input, Node, schedule};
 use crate::robot::{Entry, Output, Robot};
 
 /// An output of a function and the name of the argument it goes to.
@@ -21,11 +22,22 @@ pub struct Target {
 /// What a function does, in order.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Body {
+    /// One, or several to be called one after the other.
+    pub parts: Vec<Part>,
+    /// Values that parts hand on to later ones at a time: the length of the scratch array.
+    pub live: usize,
+}
+
+/// A function, or a part of a long one.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Part {
     /// The inputs that it reads, ascending.
     pub inputs: Vec<Input>,
-    /// The sines and cosines that it needs.
+    /// Whether it reads inputs, sines or cosines.
+    pub reads_state: bool,
+    /// The sines and cosines that it is the first to need.
     pub trig: Vec<Trig>,
-    /// Constants, values and stores.
+    /// Loads, constants, values and stores.
     pub lines: Vec<Line>,
 }
 
@@ -34,6 +46,13 @@ pub struct Body {
 pub enum Line {
     /// The share of a link begins, or that of the effects.
     Section(String),
+    /// A value of an earlier part comes from the scratch array.
+    Load {
+        /// The name.
+        name: String,
+        /// Its place.
+        place: usize,
+    },
     /// A constant gets a name.
     Constant {
         /// The name.
@@ -47,6 +66,13 @@ pub enum Line {
         name: String,
         /// The value.
         value: String,
+    },
+    /// A value goes to the scratch array for a later part.
+    Keep {
+        /// The name.
+        name: String,
+        /// Its place.
+        place: usize,
     },
     /// A value goes to an output.
     Store {
@@ -63,6 +89,45 @@ pub enum Line {
     },
 }
 
+/// A line with what the division into parts has to know of it.
+#[derive(Clone, Debug)]
+pub(super) struct Statement {
+    pub line: Line,
+    /// The node that it gives a name.
+    pub defines: Option<usize>,
+    /// Names, sines, cosines, constants and inputs that it reads, by node.
+    pub reads: Vec<usize>,
+    /// Sums and products.
+    pub operations: usize,
+}
+
+impl Part {
+    /// The arguments that it stores to, in the order of the first stores.
+    pub fn outputs(&self) -> Vec<&'static str> {
+        let mut outputs = vec![];
+        for line in &self.lines {
+            match line {
+                Line::Store { argument, .. } if !outputs.contains(argument) => {
+                    outputs.push(*argument);
+                }
+                _ => {}
+            }
+        }
+        outputs
+    }
+}
+
+impl Body {
+    /// The inputs that any part reads, ascending.
+    pub fn inputs(&self) -> Vec<Input> {
+        let all = self.parts.iter().flat_map(|part| part.inputs.clone());
+        let mut inputs: Vec<Input> = all.collect();
+        inputs.sort_unstable();
+        inputs.dedup();
+        inputs
+    }
+}
+
 /// Computes and stores all non-zero entries of the targets.
 pub fn body(robot: &Robot, targets: &[Target], language: &dyn Language) -> Body {
     let stores: Vec<Store> = targets.iter().flat_map(|t| stores(robot, *t)).collect();
@@ -70,31 +135,26 @@ pub fn body(robot: &Robot, targets: &[Target], language: &dyn Language) -> Body 
     let mut needed = schedule::order(&robot.graph, &outputs);
     needed.sort_unstable();
     let mut writer = Writer::new(&robot.graph, &outputs, language);
-    let mut lines = constants(robot, &needed, &mut writer);
-    for section in sections(robot) {
-        lines.extend(self::section(
-            robot,
-            &section,
-            &needed,
-            &stores,
-            &mut writer,
-        ));
+    // Constants first: they have the first choice of names.
+    let folded = [robot.graph.zero().node(), robot.graph.one().node()];
+    for &node in needed.iter().filter(|node| !folded.contains(node)) {
+        if matches!(robot.graph.nodes()[node], Node::Constant(_)) {
+            writer.name(node);
+        }
     }
-    let trig = angles::trig(&robot.graph, &needed);
-    Body {
-        inputs: inputs(robot, &needed, &trig),
-        trig,
-        lines,
-    }
+    let statements = sections(robot)
+        .iter()
+        .flat_map(|section| self::section(robot, section, &needed, &stores, &mut writer))
+        .collect();
+    parts::divide(&robot.graph, statements, &mut writer, language)
 }
 
-fn inputs(robot: &Robot, needed: &[usize], trig: &[Trig]) -> Vec<Input> {
-    let read = needed
-        .iter()
-        .filter_map(|&node| match robot.graph.nodes()[node] {
-            Node::Input(input) => Some(input),
-            _ => None,
-        });
+/// The inputs among the nodes that are read, and those behind the sines and cosines.
+pub(super) fn inputs(graph: &Graph, read: &[usize], trig: &[Trig]) -> Vec<Input> {
+    let read = read.iter().filter_map(|&node| match graph.nodes()[node] {
+        Node::Input(input) => Some(input),
+        _ => None,
+    });
     let angles = trig.iter().flat_map(|trig| &trig.angle.terms);
     let turned = angles.map(|&(joint, _)| Input::Q(joint));
     let mut inputs: Vec<Input> = read.chain(turned).collect();
@@ -110,7 +170,7 @@ struct Store {
 }
 
 fn stores(robot: &Robot, target: Target) -> impl Iterator<Item = Store> {
-    let matrix = !matches!(target.output, Output::Energy | Output::Power);
+    let matrix = target.output.is_matrix();
     let entries = robot.entries(target.output).into_iter();
     entries.map(move |entry| Store {
         argument: target.argument,
@@ -183,13 +243,13 @@ fn section(
     needed: &[usize],
     stores: &[Store],
     writer: &mut Writer<'_>,
-) -> Vec<Line> {
-    let mut lines = Vec::new();
+) -> Vec<Statement> {
+    let mut statements = Vec::new();
     for &node in &section.nodes {
         if needed.binary_search(&node).is_ok() && writer.is_named(node) {
             let value = writer.definition(node);
             let name = writer.name(node);
-            lines.push(Line::Value { name, value });
+            statements.push(writer.statement(Line::Value { name, value }, Some(node)));
         }
     }
     for Store {
@@ -199,29 +259,24 @@ fn section(
     } in stores
     {
         if section.columns.contains(&entry.column) {
-            lines.push(Line::Store {
+            let line = Line::Store {
                 argument,
                 row: matrix.then_some(entry.row),
                 column: entry.column,
                 value: writer.value(entry.value),
                 parameter: robot.base.parameters[entry.column].name.clone(),
-            });
+            };
+            statements.push(writer.statement(line, None));
         }
     }
-    if !lines.is_empty() {
-        lines.insert(0, Line::Section(section.title.clone()));
+    if !statements.is_empty() {
+        let title = Line::Section(section.title.clone());
+        statements.insert(0, writer.statement(title, None));
     }
-    lines
+    statements
 }
 
-fn constants(robot: &Robot, needed: &[usize], writer: &mut Writer<'_>) -> Vec<Line> {
-    let known = [robot.graph.zero().node(), robot.graph.one().node()];
-    let constant = |&node: &usize| match robot.graph.nodes()[node] {
-        Node::Constant(bits) if !known.contains(&node) => Some(Line::Constant {
-            name: writer.name(node),
-            value: f64::from_bits(bits),
-        }),
-        _ => None,
-    };
-    needed.iter().filter_map(constant).collect()
+/// The sines and cosines among some nodes.
+pub(super) fn trig(graph: &Graph, nodes: &[usize]) -> Vec<Trig> {
+    angles::trig(graph, nodes)
 }

@@ -12,6 +12,7 @@ pub mod function;
 pub mod language;
 pub mod naming;
 pub mod par;
+mod parts;
 pub mod python;
 pub mod rust;
 pub mod signals;

@@ -43,6 +43,14 @@ impl Language for Python {
         number(value)
     }
 
+    fn divides(&self) -> bool {
+        false
+    }
+
+    fn computes_trig(&self) -> bool {
+        true
+    }
+
     fn call(&self, function: Function, x: &str, _: &str) -> String {
         match function {
             Function::Sign => format!("np.sign({x})"),
@@ -170,14 +178,14 @@ fn definition(robot: &Robot, signature: &Signature) -> String {
     };
     let body = function::body(robot, &[target], &language);
     let mut text = opening(robot, signature);
-    for &input in &body.inputs {
+    for input in body.inputs() {
         let (signal, joint) = place(input);
         text.push_str(&format!(
             "    {signal}{} = {signal}[..., {joint}]\n",
             joint + 1
         ));
     }
-    for trig in &body.trig {
+    for trig in body.parts.iter().flat_map(|part| &part.trig) {
         let angle = trig.code(|joint| format!("q{}", joint + 1), number);
         for (name, function) in [(&trig.sine, "sin"), (&trig.cosine, "cos")] {
             if let Some(name) = name {
@@ -185,7 +193,7 @@ fn definition(robot: &Robot, signature: &Signature) -> String {
             }
         }
     }
-    text.extend(body.lines.iter().map(line));
+    text.extend(body.parts.iter().flat_map(|part| &part.lines).map(line));
     text.push_str("    return out\n");
     text
 }
@@ -235,6 +243,8 @@ const SLIP: &str = " Presliding
 fn line(line: &Line) -> String {
     match line {
         Line::Section(title) => format!("\n    # {}\n", remark(title)),
+        Line::Load { name, place } => format!("    {name} = live[{place}]\n"),
+        Line::Keep { name, place } => format!("    live[{place}] = {name}\n"),
         Line::Constant { name, value } => format!("    {name} = {}\n", number(*value)),
         Line::Value { name, value } => format!("    {name} = {value}\n"),
         Line::Store {

@@ -1,7 +1,9 @@
 //! Expressions of the graph as text.
 
 use std::collections::HashSet;
+use std::mem::take;
 
+use super::function::{Line, Statement};
 use super::language::Language;
 use super::naming::Names;
 use crate::expr::{Expr, Graph, Node, schedule};
@@ -23,6 +25,9 @@ pub struct Writer<'a> {
     language: &'a dyn Language,
     named: HashSet<usize>,
     names: Names,
+    /// Since the last statement: what was read, and the operations that were written.
+    reads: Vec<usize>,
+    operations: usize,
 }
 
 impl<'a> Writer<'a> {
@@ -53,6 +58,18 @@ impl<'a> Writer<'a> {
             language,
             named,
             names: Names::new(graph, language.reserved()),
+            reads: vec![],
+            operations: 0,
+        }
+    }
+
+    /// A line with what was read and computed since the last one.
+    pub(super) fn statement(&mut self, line: Line, defines: Option<usize>) -> Statement {
+        Statement {
+            line,
+            defines,
+            reads: take(&mut self.reads),
+            operations: take(&mut self.operations),
         }
     }
 
@@ -92,12 +109,14 @@ impl<'a> Writer<'a> {
 
     /// A node where it is used: by its name, or written out.
     fn reference(&mut self, node: usize) -> (String, Level) {
-        match self.graph.nodes()[node] {
-            Node::Input(input) => (self.language.input(input), Level::Atom),
-            Node::Sin(_) | Node::Cos(_) | Node::Constant(_) => (self.leaf(node), Level::Atom),
-            _ if self.is_named(node) => (self.name(node), Level::Atom),
-            _ => self.node(node),
-        }
+        let text = match self.graph.nodes()[node] {
+            Node::Input(input) => self.language.input(input),
+            Node::Sin(_) | Node::Cos(_) | Node::Constant(_) => self.leaf(node),
+            _ if self.is_named(node) => self.name(node),
+            _ => return self.node(node),
+        };
+        self.reads.push(node);
+        (text, Level::Atom)
     }
 
     fn leaf(&mut self, node: usize) -> String {
@@ -115,6 +134,7 @@ impl<'a> Writer<'a> {
     }
 
     fn node(&mut self, node: usize) -> (String, Level) {
+        self.operations += 1;
         match self.graph.nodes()[node] {
             Node::Add(a, b) => {
                 let a = self.signed(a).0;

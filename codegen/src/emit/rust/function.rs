@@ -15,7 +15,7 @@ struct Rust;
 
 impl Language for Rust {
     fn reserved(&self) -> Vec<String> {
-        let arguments = ["x", "d", "p", "r", "h", "dh"];
+        let arguments = ["x", "live", "d", "p", "r", "h", "dh"];
         let words = KEYWORDS.iter().chain(&arguments);
         words.map(|word| (*word).to_owned()).collect()
     }
@@ -37,6 +37,14 @@ impl Language for Rust {
         format!("T::splat({})", Literal::f64_unsuffixed(value))
     }
 
+    fn divides(&self) -> bool {
+        true
+    }
+
+    fn computes_trig(&self) -> bool {
+        false
+    }
+
     fn call(&self, function: Function, _: &str, x: &str) -> String {
         match function {
             Function::Sign => format!("{x}.sign()"),
@@ -53,18 +61,67 @@ impl Language for Rust {
     }
 }
 
-/// Statements that compute and store all non-zero entries of the targets.
+/// A function: what stands between its braces, and the functions of its parts if it is long.
+#[derive(Debug)]
+pub struct Code {
+    /// Statements, or the calls of the parts.
+    pub body: TokenStream,
+    /// The parts.
+    pub parts: TokenStream,
+}
+
+/// Computes and stores all non-zero entries of the targets, in a function of the given name.
 ///
 /// # Errors
 /// A message if an expression is not Rust: a defect of the generator.
-pub fn body(robot: &Robot, targets: &[Target]) -> Result<TokenStream, String> {
+pub fn code(robot: &Robot, name: &str, targets: &[Target]) -> Result<Code, String> {
     let body = function::body(robot, targets, &Rust);
-    body.lines.iter().map(line).collect()
+    if let [only] = body.parts.as_slice() {
+        return Ok(Code {
+            body: only.lines.iter().map(line).collect::<Result<_, _>>()?,
+            parts: TokenStream::new(),
+        });
+    }
+    let length = Literal::usize_unsuffixed(body.live);
+    let mut code = Code {
+        body: quote! { let mut live = [T::splat(0.0); #length]; },
+        parts: TokenStream::new(),
+    };
+    for (index, part) in body.parts.iter().enumerate() {
+        let name = format_ident!("{name}_{}", index + 1);
+        let state = part.reads_state.then(|| quote! { x, });
+        let taken = part.reads_state.then(|| quote! { x: &State<T>, });
+        let outputs = part.outputs().into_iter().map(|argument| {
+            let matrix = targets.iter().any(|t| t.argument == argument && t.output.is_matrix());
+            let argument = format_ident!("{argument}");
+            let given = quote! { #argument };
+            match matrix {
+                true => (given, quote! { #argument: &mut [[T; PARAMETERS]; JOINTS] }),
+                false => (given, quote! { #argument: &mut [T; PARAMETERS] }),
+            }
+        });
+        let (given, outputs): (Vec<_>, Vec<_>) = outputs.unzip();
+        let statements: TokenStream = part.lines.iter().map(line).collect::<Result<_, _>>()?;
+        code.body.extend(quote! { #name(#state &mut live, #(#given),*); });
+        code.parts.extend(quote! {
+            #[inline(never)]
+            fn #name<T: Lane>(#taken live: &mut [T; #length], #(#outputs),*) { #statements }
+        });
+    }
+    Ok(code)
 }
 
 fn line(line: &Line) -> Result<TokenStream, String> {
     Ok(match line {
         Line::Section(title) => comment::comment(title),
+        Line::Load { name, place } => {
+            let (name, place) = (format_ident!("{name}"), Literal::usize_unsuffixed(*place));
+            quote! { let #name = live[#place]; }
+        }
+        Line::Keep { name, place } => {
+            let (name, place) = (format_ident!("{name}"), Literal::usize_unsuffixed(*place));
+            quote! { live[#place] = #name; }
+        }
         Line::Constant { name, value } => {
             let name = format_ident!("{name}");
             let value = Literal::f64_unsuffixed(*value);

@@ -95,19 +95,25 @@ fn constants(robot: &Robot) -> TokenStream {
 
 fn functions(robot: &Robot) -> Result<TokenStream, String> {
     let target = |output, argument| Target { output, argument };
-    let d = function::body(robot, &[target(Output::Explicit, "d")])?;
-    let pr = function::body(
-        robot,
+    let code = |name, targets: &[Target]| {
+        let code = function::code(robot, name, targets)?;
+        Ok::<_, String>((code.body, code.parts))
+    };
+    let (d, d_parts) = code("explicit", &[target(Output::Explicit, "d")])?;
+    let (pr, pr_parts) = code(
+        "implicit",
         &[target(Output::Momentum, "p"), target(Output::Rest, "r")],
     )?;
-    let h = function::body(robot, &[target(Output::Energy, "h")])?;
-    let dh = function::body(robot, &[target(Output::Power, "dh")])?;
+    let (h, h_parts) = code("energy", &[target(Output::Energy, "h")])?;
+    let (dh, dh_parts) = code("power", &[target(Output::Power, "dh")])?;
     Ok(quote! {
         #[doc = " D of the explicit model tau = D(q, qd, qdd) X (Gautier 1996, eq. 5)."]
         #[doc = ""]
         #[doc = " Writes the entries that are not always zero; `d[joint][column]`, N m or N per unit"]
         #[doc = " of the parameter."]
         pub fn explicit<T: Lane>(x: &State<T>, d: &mut [[T; PARAMETERS]; JOINTS]) { #d }
+
+        #d_parts
 
         #[doc = " P and R of the implicit model tau = d/dt(P X) + R X (Gautier 1996, eqs. 7-9)."]
         #[doc = ""]
@@ -118,11 +124,17 @@ fn functions(robot: &Robot) -> Result<TokenStream, String> {
             r: &mut [[T; PARAMETERS]; JOINTS],
         ) { #pr }
 
+        #pr_parts
+
         #[doc = " h, the energies: qd . tau = (dh/dt) X + the powers (Gautier 1996, eq. 10), J."]
         pub fn energy<T: Lane>(x: &State<T>, h: &mut [T; PARAMETERS]) { #h }
 
+        #h_parts
+
         #[doc = " dh of the columns that have no energy of the state (friction), W."]
         pub fn power<T: Lane>(x: &State<T>, dh: &mut [T; PARAMETERS]) { #dh }
+
+        #dh_parts
     })
 }
 
