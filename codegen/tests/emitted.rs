@@ -18,6 +18,9 @@ use idim_codegen::expr::tape::{Batch, Tape};
 use idim_codegen::robot::{Output, Robot};
 use rand::{RngExt, SeedableRng};
 
+#[path = "robots/humanoid.rs"]
+mod made_up;
+
 /// Rounding of the functions of another library, through sums of some hundred terms.
 const TOLERANCE: f64 = 1e-13;
 const SAMPLES: usize = 100;
@@ -27,6 +30,12 @@ fn built_in(name: &str) -> Robot {
     builder::read(&path.join(format!("{name}.toml")))
         .unwrap()
         .robot
+}
+
+/// Thirty joints: long functions, which come in parts.
+fn humanoid() -> Robot {
+    let text = made_up::urdf();
+    builder::read_texts(&[("humanoid.urdf", &text)]).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// Two joints with everything that an expression can hold, and names that mean to break out.
@@ -335,6 +344,7 @@ robots! {
     scara: built_in("scara");
     ur10e: built_in("ur10e");
     panda: built_in("panda");
+    thirty_joints: humanoid();
     robot_with_every_function_and_odd_names: odd();
 }
 
@@ -349,6 +359,32 @@ fn same_robot_gives_the_same_c_and_python() {
     let (first, second) = (built_in("panda"), built_in("panda"));
     assert_eq!(emit::c(&first), emit::c(&second));
     assert_eq!(emit::python(&first), emit::python(&second));
+}
+
+/// Thirty joints, derived side by side: no clock, address or hash order reaches the text.
+#[test]
+fn same_robot_gives_the_same_bytes_in_every_thread() {
+    let texts = || {
+        let robot = humanoid();
+        let [header, source] = emit::c(&robot);
+        let python = emit::python(&robot);
+        (emit::rust(&robot).unwrap(), header, source, python)
+    };
+    let other = std::thread::spawn(texts);
+    assert_eq!(texts(), other.join().unwrap());
+}
+
+#[test]
+fn long_functions_come_in_parts_of_bounded_length() {
+    let rust = emit::rust(&humanoid()).unwrap();
+    let parts = rust.matches("fn explicit_").count();
+    assert!(parts > 2, "{parts}");
+    for part in rust.split("\nfn explicit_").skip(1) {
+        let body = part.split("\n}").next().unwrap();
+        let operators = [" * ", " + ", " - "].map(|o| body.matches(o).count());
+        let operators: usize = operators.iter().sum();
+        assert!(operators <= 1000, "{operators} operations");
+    }
 }
 
 /// The description is read by Rust too: the words that break it are the same kind.

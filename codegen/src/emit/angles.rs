@@ -52,8 +52,8 @@ impl Trig {
         number: impl Fn(f64) -> String,
     ) -> String {
         let mut text = String::new();
-        for &(joint, sign) in &self.angle.terms {
-            text.push_str(operator(text.is_empty(), sign < 0));
+        for (joint, negative) in self.angle.steps() {
+            text.push_str(operator(text.is_empty(), negative));
             text.push_str(&position(joint));
         }
         if !self.angle.offset.is_zero() {
@@ -67,8 +67,8 @@ impl Trig {
     /// The angle as a person writes it, such as `q2 + q3 + pi/2`.
     pub fn text(&self) -> String {
         let mut text = String::new();
-        for &(joint, sign) in &self.angle.terms {
-            text.push_str(operator(text.is_empty(), sign < 0));
+        for (joint, negative) in self.angle.steps() {
+            text.push_str(operator(text.is_empty(), negative));
             text.push_str(&format!("q{}", joint + 1));
         }
         if !self.angle.offset.is_zero() {

@@ -279,7 +279,11 @@ fn definition(robot: &Robot, signature: &Signature) -> String {
         for (index, part) in body.parts.iter().enumerate() {
             let name = format!("{}_{}", signature.name, index + 1);
             text.push_str(&self::part(robot, signature, &name, body.live, part));
-            let given = [signals(robot, signature, part), vec!["live"], part.outputs()];
+            let given = [
+                signals(robot, signature, part),
+                vec!["live"],
+                part.outputs(),
+            ];
             calls.push_str(&format!("    {name}({});\n", given.concat().join(", ")));
         }
     }

@@ -62,7 +62,7 @@ fn unique(taken: &mut HashSet<String>, wish: &str) -> String {
 }
 
 /// The name of every angle of a graph, to go behind `s` or `c`: `23` for q2 + q3, `2m3` for
-/// q2 - q3, `6o` with a constant offset.
+/// q2 - q3, `22` for 2 q2, `6o` with a constant offset.
 pub fn angles(graph: &Graph) -> Vec<String> {
     let mut taken = HashSet::new();
     (0..graph.angle_count())
@@ -73,8 +73,8 @@ pub fn angles(graph: &Graph) -> Vec<String> {
 fn angle(angle: &AngleSum) -> String {
     let wide = angle.terms.iter().any(|&(joint, _)| joint >= 9);
     let mut name = String::new();
-    for (place, &(joint, sign)) in angle.terms.iter().enumerate() {
-        if sign < 0 {
+    for (place, (joint, negative)) in angle.steps().enumerate() {
+        if negative {
             name.push('m');
         } else if wide && place > 0 {
             name.push('_');

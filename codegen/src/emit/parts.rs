@@ -80,7 +80,8 @@ impl Scratch {
             for statement in piece {
                 for &node in &statement.reads {
                     // A sine or cosine that is no field of the state belongs to its first reader.
-                    let computed = trig && matches!(graph.nodes()[node], Node::Sin(_) | Node::Cos(_));
+                    let computed =
+                        trig && matches!(graph.nodes()[node], Node::Sin(_) | Node::Cos(_));
                     let home = match computed {
                         true => Some(*first.entry(node).or_insert(index)),
                         false => first.get(&node).copied(),
@@ -143,7 +144,10 @@ fn part(
     let defined: HashSet<usize> = statements.iter().filter_map(|s| s.defines).collect();
     let mut lines = vec![];
     // All loads come before what may take their places.
-    for &node in read.iter().filter(|node| !defined.contains(node) && !own.contains(node)) {
+    for &node in read
+        .iter()
+        .filter(|node| !defined.contains(node) && !own.contains(node))
+    {
         if let Some(place) = scratch.load(node, index) {
             let name = writer.name(node);
             lines.push(Line::Load { name, place });

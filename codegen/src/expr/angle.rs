@@ -137,7 +137,7 @@ impl std::ops::Neg for Angle {
 /// A sum of joint angles along parallel axes plus a constant, such as q2 + q3 + pi/2.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AngleSum {
-    /// Joints and the sign of each, ordered by joint.
+    /// Joints and how often each is added (negative: subtracted), ordered by joint.
     pub terms: Vec<(usize, i8)>,
     /// The constant.
     pub offset: Angle,
@@ -160,7 +160,15 @@ impl AngleSum {
         }
     }
 
-    /// The sum of two sums; no joint of one may occur in the other with the same sign.
+    /// The joints one by one, each with its sign: 2 q1 - q2 is q1, q1, -q2.
+    pub fn steps(&self) -> impl Iterator<Item = (usize, bool)> + '_ {
+        self.terms.iter().flat_map(|&(joint, count)| {
+            let step = (joint, count < 0);
+            std::iter::repeat_n(step, usize::from(count.unsigned_abs()))
+        })
+    }
+
+    /// The sum of two sums.
     pub fn plus(&self, other: &AngleSum) -> AngleSum {
         let mut terms = self.terms.clone();
         for &(joint, sign) in &other.terms {

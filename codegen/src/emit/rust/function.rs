@@ -92,7 +92,9 @@ pub fn code(robot: &Robot, name: &str, targets: &[Target]) -> Result<Code, Strin
         let state = part.reads_state.then(|| quote! { x, });
         let taken = part.reads_state.then(|| quote! { x: &State<T>, });
         let outputs = part.outputs().into_iter().map(|argument| {
-            let matrix = targets.iter().any(|t| t.argument == argument && t.output.is_matrix());
+            let matrix = targets
+                .iter()
+                .any(|t| t.argument == argument && t.output.is_matrix());
             let argument = format_ident!("{argument}");
             let given = quote! { #argument };
             match matrix {
@@ -102,7 +104,8 @@ pub fn code(robot: &Robot, name: &str, targets: &[Target]) -> Result<Code, Strin
         });
         let (given, outputs): (Vec<_>, Vec<_>) = outputs.unzip();
         let statements: TokenStream = part.lines.iter().map(line).collect::<Result<_, _>>()?;
-        code.body.extend(quote! { #name(#state &mut live, #(#given),*); });
+        code.body
+            .extend(quote! { #name(#state &mut live, #(#given),*); });
         code.parts.extend(quote! {
             #[inline(never)]
             fn #name<T: Lane>(#taken live: &mut [T; #length], #(#outputs),*) { #statements }

@@ -18,7 +18,7 @@ pub fn state(robot: &Robot) -> Result<TokenStream, String> {
     let mut names = TokenStream::new();
     for trig in trig(robot) {
         let text = trig.text();
-        let simple = trig.angle.terms.len() == 1 && trig.angle.offset.is_zero();
+        let simple = trig.angle.steps().count() == 1 && trig.angle.offset.is_zero();
         let sum = trig.code(
             |joint| format!("q[{joint}]"),
             |value| format!("T::splat({})", Literal::f64_unsuffixed(value)),
