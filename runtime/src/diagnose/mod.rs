@@ -26,6 +26,7 @@ mod picture;
 mod proof;
 mod repeats;
 mod rest;
+mod rounding;
 mod screen;
 mod settled;
 mod shape;
@@ -35,6 +36,7 @@ mod stepwise;
 mod still;
 mod summary;
 mod system;
+mod thin;
 mod track;
 mod verdict;
 

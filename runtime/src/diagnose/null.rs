@@ -7,6 +7,7 @@ use super::likelihood::{self, left};
 use super::linear::dot;
 use super::noise::{Noise, of_rows};
 use super::repeats::{Repeats, find, pure_error};
+use super::rounding::Rounding;
 use super::system::{Pair, Sparse, System};
 use super::track::Predicted;
 use crate::knowledge::Knowledge;
@@ -98,6 +99,7 @@ pub(super) fn null(
         true => Vec::new(),
         false => slow_columns(joined),
     };
+    let rounding = Rounding::of(model, joined);
     let mut system = fit(model, (joined, instruments), &noise, prior);
     for _ in 0..PASSES {
         let parameters = parameters(model, &system);
@@ -121,7 +123,11 @@ pub(super) fn null(
                 let slow = slow[joint]
                     .iter()
                     .map(|c| pure_error(c, weights, &repeats).rows);
-                let left = left(slow.chain([error.rows]).collect());
+                let mut left = left(slow.chain([error.rows]).collect());
+                if let Some(rounding) = &rounding {
+                    let hidden = rounding.hidden(&parameters, &product, joint);
+                    left.iter_mut().zip(hidden).for_each(|(a, b)| *a += b);
+                }
                 of_rows(&left, &error.weights, &joined.segments, 1.0)
             };
         }

@@ -112,7 +112,9 @@ pub(super) fn own_noise(track: &Track) -> Option<usize> {
 fn samples(track: &Track, rows: usize) -> usize {
     let q = &track.source.recording.q;
     let len = q.first().map_or(0, Vec::len);
-    let ratio = (track.step() * track.motion.rate_hz).round().max(1.0) as usize;
+    let ratio = (track.step() * track.source.recording.rate_hz)
+        .round()
+        .max(1.0) as usize;
     let apart = |lag: usize| -> f64 {
         let of_joint = |q: &Vec<f64>| -> f64 {
             (0..len.saturating_sub(lag))

@@ -268,6 +268,15 @@ impl<'a> Bench<'a> {
     /// differentiate the model's torque, or have a memory, follow the smooth part of the motion, but
     /// for links that swing beyond it.
     pub fn torque(&self, state: &State, track: &Track) -> Vec<Vec<f64>> {
+        let len = track.source.recording.len;
+        let torque = self.thinned_torque(state, track);
+        let spread = torque
+            .into_iter()
+            .map(|torque| track.thin.spread(torque, len));
+        spread.collect()
+    }
+
+    fn thinned_torque(&self, state: &State, track: &Track) -> Vec<Vec<f64>> {
         let mut torque = track.predict(self.model, &state.parameters).model;
         let smooth = track.beside(self.model, &Instead::Below(SMOOTH_HZ));
         let smooth = smooth.unwrap_or_else(|_| track.clone());

@@ -8,13 +8,14 @@ use rayon::prelude::*;
 use super::catalogue::{ColumnsAlong, Hypothesis, Signals, TorqueColumn};
 use super::rest::Rested;
 use super::still::{dead_band, reversals, weights};
+use super::thin::Thin;
 use crate::log::{Companion, Recording, resolution};
 use crate::model::{ColumnKind, IdentificationModel, Output};
 use crate::observe::{
     Equations, Filtering, ModelKind, Motion, ObserveError, check_torque, contract, equations_at,
 };
 use crate::settings::{Edges, Velocity};
-use crate::signal::{Decimator, SignalError};
+use crate::signal::Decimator;
 
 /// Reaches of the filters until what rings on from the ends of a log is below its noise, and the
 /// share of a log that is spared for it at most.
@@ -35,6 +36,8 @@ pub(super) struct Decimated {
 #[derive(Clone, Debug)]
 pub(super) struct Track {
     pub motion: Motion,
+    /// Which samples of the log the motion has.
+    pub thin: Thin,
     /// Seconds since the beginning of the log.
     t: Vec<f64>,
     decimator: Decimator,
@@ -45,6 +48,8 @@ pub(super) struct Track {
     /// What each row counts for, by joint.
     pub weights: Vec<Vec<f64>>,
     pub dead_band: Vec<f64>,
+    /// Step of each joint's encoder, rad or m.
+    pub steps: Vec<f64>,
     /// What it was made of.
     pub source: Arc<Source>,
 }
@@ -83,12 +88,8 @@ impl Track {
     ) -> Result<Track, ObserveError> {
         check_torque(recording)?;
         let mut motion = Motion::full(recording, model, filtering)?;
-        let fail = |source: SignalError| ObserveError::Filter {
-            log: recording.name.clone(),
-            step: "parallel filter",
-            source,
-        };
-        let decimator = filtering.decimator(motion.rate_hz).map_err(fail)?;
+        let fail = ObserveError::filter(&recording.name, "parallel filter");
+        let decimator = filtering.decimator(motion.rate_hz).map_err(&fail)?;
         let kept = inner(&motion, filtering, &decimator);
         if kept.len() < 20 {
             let (log, has) = (recording.name.clone(), motion.len);
@@ -107,15 +108,27 @@ impl Track {
             None => recording.q.iter().map(|q| resolution(q)).collect(),
         };
         let dead_band = dead_band(&motion, &steps, filtering);
-        let reach = filtering.reach(motion.rate_hz);
+        // A controller runs at the rate of the log.
+        let thin = match companion.controller {
+            Some(_) => Thin::NOT,
+            None => Thin::to_enough(filtering, motion.rate_hz, &kept),
+        };
+        let motion = thin.motion(motion).map_err(&fail)?;
+        let left = thin.filtering(filtering);
+        let kept: Vec<usize> = kept.into_iter().map(|sample| thin.place(sample)).collect();
+        let reach = left.reach(motion.rate_hz);
         let track = Track {
-            t: (0..motion.len).map(|k| k as f64 / motion.rate_hz).collect(),
+            t: (0..motion.len)
+                .map(|k| thin.time(k, motion.rate_hz))
+                .collect(),
+            decimator: left.decimator(motion.rate_hz).map_err(&fail)?,
+            thin,
             weights: weights(&motion, &kept, &dead_band, reach),
             equations: Vec::new(),
             motion,
-            decimator,
             kept,
             dead_band,
+            steps,
             source: Arc::new(Source {
                 recording: recording.clone(),
                 companion: companion.clone(),
@@ -150,8 +163,10 @@ impl Track {
             Instead::Positions(q) => recording.q.clone_from(q),
             Instead::Below(fq_hz) => filtering.fq_hz = filtering.fq_hz.min(*fq_hz),
         }
+        let motion = Motion::full(&recording, model, &filtering)?;
+        let motion = self.thin.motion(motion);
         let track = Track {
-            motion: Motion::full(&recording, model, &filtering)?,
+            motion: motion.map_err(ObserveError::filter(&recording.name, "low-pass"))?,
             ..self.clone()
         };
         track.observed(model)
@@ -162,13 +177,8 @@ impl Track {
         let rested = Rested::new(model, self.dead_band.clone());
         let (motion, decimator) = (&self.motion, &self.decimator);
         let made = equations_at(&rested, ModelKind::Explicit, motion, decimator, &self.kept);
-        self.equations = made
-            .map_err(|source| ObserveError::Filter {
-                log: motion.log.clone(),
-                step: "parallel filter",
-                source,
-            })?
-            .blocks;
+        let fail = ObserveError::filter(&motion.log, "parallel filter");
+        self.equations = made.map_err(fail)?.blocks;
         Ok(self)
     }
 

@@ -108,7 +108,7 @@ pub enum ObserveError {
 
 impl ObserveError {
     /// Says in which log and at which step a filter failed.
-    pub(super) fn filter(log: &str, step: &'static str) -> impl Fn(SignalError) -> Self {
+    pub(crate) fn filter(log: &str, step: &'static str) -> impl Fn(SignalError) -> Self {
         move |source| ObserveError::Filter {
             log: log.to_owned(),
             step,
