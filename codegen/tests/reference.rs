@@ -14,8 +14,9 @@ use std::collections::HashMap;
 use idim_codegen::catalogue::EffectKind;
 use idim_codegen::expr::tape::{Batch, Tape};
 use idim_codegen::robot::{Output, Robot};
+use nalgebra::DMatrix;
 use robots::{description, gravity, reference};
-use serde_json::Value;
+use serde_json::{Value, json};
 
 /// The name of the independent standard parameter of each base parameter.
 fn kept(robot: &Robot) -> Vec<String> {
@@ -60,6 +61,58 @@ fn base_parameters_are_the_classical_ones() {
             "{name}"
         );
     }
+}
+
+/// The rank of D at rest: what gravity alone can tell.
+#[test]
+fn gravity_alone_tells_as_many_parameters_as_in_the_reference() {
+    let (Some(geometry), Some(base)) = (
+        reference("mdh_geometry.json"),
+        reference("base_parameters.json"),
+    ) else {
+        return;
+    };
+    for (name, expected) in base["robots"].as_object().unwrap() {
+        let Some(expected) = expected["base_static"].as_u64() else {
+            continue;
+        };
+        let source = &geometry["robots"][name];
+        let robot = Robot::new(description(name, source, gravity(source), &[])).unwrap();
+        let n = robot.mechanism.joints.len();
+        let columns = robot.base.parameters.len();
+        let states = 4 * columns;
+        let mut w = DMatrix::zeros(n * states, columns);
+        for state in 0..states {
+            // Angles that fill the circle, none like another.
+            let q = (0..n).map(|joint| 2.4 * (1 + state * n + joint) as f64 % 6.28);
+            let rest = json!(vec![0.0; n]);
+            let sample = json!({ "q": q.collect::<Vec<f64>>(), "dq": rest, "ddq": rest });
+            for ((row, column), value) in evaluate(&robot, Output::Explicit, &sample) {
+                w[(state * n + row, column)] = value;
+            }
+        }
+        let sigma = w.singular_values();
+        let rank = sigma.iter().filter(|&&s| s > 1e-9 * sigma.max()).count();
+        let rank = if sigma.max() > 0.0 { rank } else { 0 };
+        assert_eq!(rank as u64, expected, "{name}");
+    }
+}
+
+/// The parallelogram robot without its loops is a tree of eight joints.
+#[test]
+fn tree_of_the_sr400_has_the_base_parameters_of_the_reference() {
+    let (Some(geometry), Some(base)) = (
+        reference("mdh_geometry.json"),
+        reference("base_parameters.json"),
+    ) else {
+        return;
+    };
+    let mut source = geometry["robots"]["SR400"].clone();
+    source["frames"].as_array_mut().unwrap().truncate(8);
+    source["numeric"] = json!({ "d2": 0.5, "d3": 0.9, "d4": 0.15, "-d8": -0.4, "r4": 0.8 });
+    let robot = Robot::new(description("SR400", &source, [0.0, 0.0, -9.81], &[])).unwrap();
+    let expected = &base["robots"]["SR400"]["tree_base_rigid"];
+    assert_eq!(robot.base.parameters.len(), *expected);
 }
 
 #[test]
