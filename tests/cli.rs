@@ -118,6 +118,12 @@ fn describe_for_people_names_joints_parameters_and_operations() {
 }
 
 #[test]
+fn describe_of_an_arm_of_six_axes_is_understood_in_a_minute() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/describe/six_axes.urdf");
+    insta::assert_snapshot!(stdout(&idim(&["describe", path])));
+}
+
+#[test]
 fn generate_writes_the_same_code_to_a_file_and_to_standard_output() {
     let folder = Folder::new();
     let path = folder.path("scara.rs");

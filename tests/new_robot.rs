@@ -66,6 +66,7 @@ fn urdf_dropped_into_robots_becomes_a_built_in_robot() {
         "runtime",
         "robots",
         "benches",
+        "examples",
     ] {
         copy(&project.join(part), &folder.path().join(part));
     }

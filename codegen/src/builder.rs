@@ -11,7 +11,7 @@
 //!
 //! ```ignore
 //! mod arm {
-//!     idim_codegen::include_robot!("arm");
+//!     idim_runtime::include_robot!("arm");
 //! }
 //! ```
 

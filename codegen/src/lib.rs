@@ -22,7 +22,8 @@ pub use builder::{BuildError, Builder};
 pub use robot::Robot;
 
 /// Includes the generated module of a robot by its name; the build script made it with
-/// [`Builder`].
+/// [`Builder`]. The same as `idim_runtime::include_robot!`, for crates that have this one among their
+/// dependencies too.
 #[macro_export]
 macro_rules! include_robot {
     ($name:literal) => {

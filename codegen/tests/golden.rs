@@ -30,6 +30,11 @@ fn emps_module_is_one_axis() {
 }
 
 #[test]
+fn arm_of_a_urdf_has_a_module_to_be_read() {
+    insta::assert_snapshot!(robot("examples/controller/robots/arm.urdf"));
+}
+
+#[test]
 fn scara_header_tells_a_c_programmer_everything() {
     let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../robots/scara.toml");
     let [header, _] = emit::c(&builder::read(&path).unwrap().robot);

@@ -20,3 +20,19 @@ pub mod report;
 pub mod settings;
 pub mod signal;
 pub mod simulate;
+
+/// Includes the generated module of a robot by its name; the build script made it with
+/// `idim_codegen::Builder`.
+///
+/// ```ignore
+/// mod arm {
+///     #![allow(dead_code, missing_docs, clippy::all)]
+///     idim_runtime::include_robot!("arm");
+/// }
+/// ```
+#[macro_export]
+macro_rules! include_robot {
+    ($name:literal) => {
+        include!(concat!(env!("OUT_DIR"), "/idim/", $name, ".rs"));
+    };
+}

@@ -4,6 +4,7 @@ use std::fmt::Write;
 use std::path::PathBuf;
 
 use idim::codegen::Robot;
+use idim::codegen::base::lengths;
 use idim::codegen::derive::ParameterKind;
 use idim::codegen::expr::Operations;
 use idim::codegen::mechanism::{Joint, JointKind};
@@ -49,6 +50,7 @@ struct Report {
     joints: Vec<JointReport>,
     standard_parameters: usize,
     rank_gap: f64,
+    lengths: Vec<LengthReport>,
     base_parameters: Vec<ParameterReport>,
     operations: OperationsReport,
     snaps: Vec<SnapReport>,
@@ -66,6 +68,13 @@ struct JointReport {
     theta: f64,
     position: [f64; 3],
     bodies: Vec<String>,
+}
+
+/// A length that relations speak of by name, m.
+#[derive(Debug, Serialize)]
+struct LengthReport {
+    name: String,
+    value: f64,
 }
 
 #[derive(Debug, Serialize)]
@@ -116,6 +125,13 @@ impl Report {
                 .collect(),
             standard_parameters: robot.base.standard,
             rank_gap: robot.base.gap,
+            lengths: lengths::of(&robot.mechanism, &robot.description)
+                .into_iter()
+                .map(|length| LengthReport {
+                    name: length.name,
+                    value: length.value,
+                })
+                .collect(),
             base_parameters: robot
                 .base
                 .parameters
@@ -265,6 +281,12 @@ fn snaps(out: &mut String, robot: &Robot) {
 }
 
 fn parameters(out: &mut String, robot: &Robot) {
+    let lengths = lengths::of(&robot.mechanism, &robot.description);
+    let lengths = lengths.iter().map(|l| format!("{} = {}", l.name, l.value));
+    let lengths: Vec<String> = lengths.collect();
+    if !lengths.is_empty() {
+        let _ = writeln!(out, "\n  lengths, m: {}", lengths.join(", "));
+    }
     let _ = writeln!(out, "\n  {:<8} {:<10} stands for", "column", "unit");
     for parameter in &robot.base.parameters {
         let head = format!("  {:<8} {:<10} ", parameter.name, parameter.unit);
