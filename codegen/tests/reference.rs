@@ -10,6 +10,7 @@
 mod robots;
 
 use std::collections::HashMap;
+use std::f64::consts::TAU;
 
 use idim_codegen::catalogue::EffectKind;
 use idim_codegen::expr::tape::{Batch, Tape};
@@ -84,7 +85,7 @@ fn gravity_alone_tells_as_many_parameters_as_in_the_reference() {
         let mut w = DMatrix::zeros(n * states, columns);
         for state in 0..states {
             // Angles that fill the circle, none like another.
-            let q = (0..n).map(|joint| 2.4 * (1 + state * n + joint) as f64 % 6.28);
+            let q = (0..n).map(|joint| 2.4 * (1 + state * n + joint) as f64 % TAU);
             let rest = json!(vec![0.0; n]);
             let sample = json!({ "q": q.collect::<Vec<f64>>(), "dq": rest, "ddq": rest });
             for ((row, column), value) in evaluate(&robot, Output::Explicit, &sample) {
