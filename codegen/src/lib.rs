@@ -12,6 +12,7 @@ pub mod derive;
 pub mod describe;
 pub mod emit;
 pub mod expr;
+pub mod functions;
 pub mod knowledge;
 pub mod mechanism;
 pub mod placement;

@@ -1,9 +1,11 @@
 //! A robot from its description to everything that readers of the graph need.
 
 use crate::base::{self, BaseError, BaseParameter, BaseParameters};
+use crate::derive::motion::Motions;
 use crate::derive::{self, ParameterKind};
 use crate::describe::Description;
 use crate::expr::{Expr, Graph, Operations};
+use crate::functions::{self, Function, Group};
 use crate::mechanism::Mechanism;
 use crate::placement;
 
@@ -73,6 +75,11 @@ pub struct Robot {
     pub ends: Vec<usize>,
     /// The base parameters and their columns.
     pub base: BaseParameters,
+    /// Functions beside the identification models; none unless asked for.
+    pub functions: Vec<Function>,
+    /// Number of nodes of the identification models; those of the functions come after them.
+    pub models_end: usize,
+    motions: Motions,
 }
 
 impl Robot {
@@ -99,10 +106,26 @@ impl Robot {
         Ok(Robot {
             description,
             mechanism,
+            models_end: graph.nodes().len(),
             graph,
             ends,
             base,
+            functions: vec![],
+            motions,
         })
+    }
+
+    /// The same with functions beside the identification models, whose text stays as it is.
+    #[must_use]
+    pub fn with(mut self, groups: &[Group]) -> Robot {
+        self.functions = functions::derive(
+            &mut self.graph,
+            &self.mechanism,
+            &mut self.motions,
+            &self.base,
+            groups,
+        );
+        self
     }
 
     /// The non-zero entries of an output, by row, then by column.

@@ -1,12 +1,13 @@
 //! C99: a header and a source without allocation, state, or dependency but `math.h`.
 
 use super::File;
-use super::function::{self, Body, Line, Part, Target};
+use super::function::{Body, Line, Part};
 use super::language::Language;
-use super::signature::{self, Signature, has_slip};
+use super::signature::{Prototype, has_slip, prototypes};
 use super::summary::summary;
 use super::text::{number, quoted, remark};
 use crate::expr::{Function, Input};
+use crate::functions::Extent;
 use crate::knowledge::Knowledge;
 use crate::robot::Robot;
 
@@ -17,7 +18,7 @@ const RESERVED: &str = "auto break case char const continue default do double el
     sin cos fabs tanh exp pow NAN INFINITY HUGE_VAL HUGE_VALF HUGE_VALL math_errhandling \
     MATH_ERRNO MATH_ERREXCEPT FP_NAN FP_INFINITE FP_ZERO FP_SUBNORMAL FP_NORMAL FP_ILOGB0 \
     FP_ILOGBNAN fpclassify isfinite isinf isnan isnormal signbit isgreater isless isunordered \
-    q qd qdd slip live D P R h dh row column sign bell sliding clear asm unix linux";
+    q qd qdd slip live D P R h dh X tau M g T J row column sign bell sliding clear asm unix linux";
 
 /// C as a [`Language`].
 struct C;
@@ -33,6 +34,7 @@ impl Language for C {
             Input::Qd(joint) => format!("qd[{joint}]"),
             Input::Qdd(joint) => format!("qdd[{joint}]"),
             Input::Slip(joint) => format!("sliding(slip, qd, {joint})"),
+            Input::Parameter(column) => format!("X[{column}]"),
         }
     }
 
@@ -107,7 +109,7 @@ fn header(robot: &Robot) -> String {
             .replace("THE_SHA", &robot.description.hash)
             .replace("INDICES", &columns.collect::<String>()),
     );
-    for signature in &signature::ALL {
+    for signature in &prototypes(robot) {
         let doc = format!("/* {}.\n * {}. */\n", signature.summary, signature.unit);
         text.push_str(&format!("{doc}{};\n\n", prototype(robot, signature)));
     }
@@ -178,27 +180,39 @@ extern const double NAME_nominal[UPPER_PARAMETERS];
 
 ";
 
-fn prototype(robot: &Robot, signature: &Signature) -> String {
+fn prototype(robot: &Robot, signature: &Prototype<'_>) -> String {
     let name = &robot.mechanism.name;
     let upper = name.to_ascii_uppercase();
-    let slip = has_slip(robot).then_some(&"slip");
-    let inputs = signature.signals.iter().chain(slip);
-    let inputs: String = inputs
-        .map(|signal| format!("const double {signal}[{upper}_JOINTS], "))
+    let parameters = signature.parameters.then_some("X");
+    let inputs: String = (signature.all_signals().chain(parameters))
+        .map(|input| format!("{}, ", input_array(&upper, input)))
         .collect();
-    let rows = match signature.matrix {
-        true => format!("[{upper}_JOINTS]"),
-        false => String::new(),
+    let output = output_array(&upper, signature, signature.argument);
+    let function = &signature.name;
+    format!("void {name}_{function}(\n    {inputs}\n    {output})").replace(", \n", ",\n")
+}
+
+/// The declaration of an argument that is read.
+fn input_array(upper: &str, input: &str) -> String {
+    match input {
+        "X" => format!("const double X[{upper}_PARAMETERS]"),
+        signal => format!("const double {signal}[{upper}_JOINTS]"),
+    }
+}
+
+/// The declaration of the argument that is written.
+fn output_array(upper: &str, signature: &Prototype<'_>, argument: &str) -> String {
+    let extent = |extent: Extent| match extent {
+        Extent::Joints => format!("[{upper}_JOINTS]"),
+        Extent::Parameters => format!("[{upper}_PARAMETERS]"),
+        Extent::Number(number) => format!("[{number}]"),
     };
-    let function = signature.name;
-    format!(
-        "void {name}_{function}(\n    {inputs}\n    double {function}{rows}[{upper}_PARAMETERS])"
-    )
-    .replace(", \n", ",\n")
+    let rows = signature.rows.map(extent).unwrap_or_default();
+    format!("double {argument}{rows}{}", extent(signature.columns))
 }
 
 fn source(robot: &Robot) -> String {
-    let functions: String = signature::ALL
+    let functions: String = prototypes(robot)
         .iter()
         .map(|signature| definition(robot, signature))
         .collect();
@@ -264,12 +278,8 @@ fn tables(robot: &Robot) -> String {
     )
 }
 
-fn definition(robot: &Robot, signature: &Signature) -> String {
-    let target = Target {
-        output: signature.output,
-        argument: signature.name,
-    };
-    let body = function::body(robot, &[target], &C);
+fn definition(robot: &Robot, signature: &Prototype<'_>) -> String {
+    let body = signature.body(robot, signature.argument, &C);
     let mut text = String::new();
     let mut calls = String::new();
     if let [only] = body.parts.as_slice() {
@@ -279,34 +289,28 @@ fn definition(robot: &Robot, signature: &Signature) -> String {
         for (index, part) in body.parts.iter().enumerate() {
             let name = format!("{}_{}", signature.name, index + 1);
             text.push_str(&self::part(robot, signature, &name, body.live, part));
-            let given = [
-                signals(robot, signature, part),
-                vec!["live"],
-                part.outputs(),
-            ];
+            let given = [inputs(signature, part), vec!["live"], part.outputs()];
             calls.push_str(&format!("    {name}({});\n", given.concat().join(", ")));
         }
     }
     text.push_str(&format!("{}\n{{\n", prototype(robot, signature)));
-    text.push_str(&unused(robot, signature, &body));
-    text.push_str(&zeros(robot, signature));
+    text.push_str(&unused(signature, &body));
+    if signature.sparse {
+        text.push_str(&zeros(robot, signature));
+    }
     text.push_str(&calls);
     text.push_str("}\n\n");
     text
 }
 
-/// A part of a long function: it takes the signals that it reads, and the scratch array.
-fn part(robot: &Robot, signature: &Signature, name: &str, live: usize, part: &Part) -> String {
+/// A part of a long function: it takes what it reads, and the scratch array.
+fn part(robot: &Robot, signature: &Prototype<'_>, name: &str, live: usize, part: &Part) -> String {
     let upper = robot.mechanism.name.to_ascii_uppercase();
-    let inputs: String = (signals(robot, signature, part).iter())
-        .map(|signal| format!("const double {signal}[{upper}_JOINTS], "))
+    let inputs: String = (inputs(signature, part).into_iter())
+        .map(|input| format!("{}, ", input_array(&upper, input)))
         .collect();
-    let rows = match signature.matrix {
-        true => format!("[{upper}_JOINTS]"),
-        false => String::new(),
-    };
-    let outputs: String = (part.outputs().iter())
-        .map(|output| format!(", double {output}{rows}[{upper}_PARAMETERS]"))
+    let outputs: String = (part.outputs().into_iter())
+        .map(|output| format!(", {}", output_array(&upper, signature, output)))
         .collect();
     format!(
         "static void {name}(\n    {inputs}double live[{live}]{outputs})\n{{\n{}}}\n\n",
@@ -314,11 +318,11 @@ fn part(robot: &Robot, signature: &Signature, name: &str, live: usize, part: &Pa
     )
 }
 
-/// The signals that a part reads, in the order of the function's own arguments.
-fn signals(robot: &Robot, signature: &Signature, part: &Part) -> Vec<&'static str> {
-    let slip = has_slip(robot).then_some(&"slip");
-    let all = signature.signals.iter().chain(slip).copied();
-    all.filter(|signal| is_read(signal, &part.inputs)).collect()
+/// What a part reads, in the order of the function's own arguments.
+fn inputs(signature: &Prototype<'_>, part: &Part) -> Vec<&'static str> {
+    let parameters = signature.parameters.then_some("X");
+    let all = signature.all_signals().chain(parameters);
+    all.filter(|input| is_read(input, &part.inputs)).collect()
 }
 
 fn statements(part: &Part) -> String {
@@ -336,13 +340,13 @@ fn statements(part: &Part) -> String {
 }
 
 /// Says of arguments that are not read that this is meant.
-fn unused(robot: &Robot, signature: &Signature, body: &Body) -> String {
-    let inputs = body.inputs();
-    let slip = has_slip(robot).then_some(&"slip");
-    let signals = signature.signals.iter().chain(slip);
-    let unread = signals.filter(|signal| !is_read(signal, &inputs));
+fn unused(signature: &Prototype<'_>, body: &Body) -> String {
+    let read = body.inputs();
+    let parameters = signature.parameters.then_some("X");
+    let inputs = signature.all_signals().chain(parameters);
+    let unread = inputs.filter(|input| !is_read(input, &read));
     unread
-        .map(|signal| format!("    (void)({signal});\n"))
+        .map(|input| format!("    (void)({input});\n"))
         .collect()
 }
 
@@ -352,14 +356,15 @@ fn is_read(signal: &str, inputs: &[Input]) -> bool {
         Input::Qd(_) => signal == "qd",
         Input::Qdd(_) => signal == "qdd",
         Input::Slip(_) => signal == "slip" || signal == "qd",
+        Input::Parameter(_) => signal == "X",
     })
 }
 
-fn zeros(robot: &Robot, signature: &Signature) -> String {
+fn zeros(robot: &Robot, signature: &Prototype<'_>) -> String {
     let upper = robot.mechanism.name.to_ascii_uppercase();
-    let name = signature.name;
+    let name = signature.argument;
     let columns = format!("for (int column = 0; column < {upper}_PARAMETERS; column++)");
-    match signature.matrix {
+    match signature.rows.is_some() {
         true => format!(
             "    for (int row = 0; row < {upper}_JOINTS; row++) {{\n        {columns} {{\n            \
              {name}[row][column] = 0.0;\n        }}\n    }}\n"
@@ -385,7 +390,11 @@ fn line(line: &Line) -> String {
             parameter,
         } => {
             let row = row.map_or(String::new(), |row| format!("[{row}]"));
-            format!("    {argument}{row}[{column}] = {value}; /* {parameter} */\n")
+            let note = match parameter.as_str() {
+                "" => String::new(),
+                parameter => format!(" /* {parameter} */"),
+            };
+            format!("    {argument}{row}[{column}] = {value};{note}\n")
         }
     }
 }

@@ -8,7 +8,8 @@ use super::statement::Writer;
 use crate::base::BaseParameter;
 use crate::derive::ParameterKind;
 use crate::expr::{Expr, Graph, Input, Node, schedule};
-use crate::robot::{Entry, Output, Robot};
+use crate::functions::Function;
+use crate::robot::{Output, Robot};
 
 /// An output of a function and the name of the argument it goes to.
 #[derive(Clone, Copy, Debug)]
@@ -84,7 +85,7 @@ pub enum Line {
         column: usize,
         /// The value.
         value: String,
-        /// Name of the parameter whose column it is.
+        /// Name of the parameter whose column it is, or nothing.
         parameter: String,
     },
 }
@@ -130,8 +131,42 @@ impl Body {
 
 /// Computes and stores all non-zero entries of the targets.
 pub fn body(robot: &Robot, targets: &[Target], language: &dyn Language) -> Body {
-    let stores: Vec<Store> = targets.iter().flat_map(|t| stores(robot, *t)).collect();
-    let outputs: Vec<Expr> = stores.iter().map(|store| store.entry.value).collect();
+    let sections = sections(robot, "");
+    let stores: Vec<Store> = (targets.iter())
+        .flat_map(|target| stores(robot, *target, &sections))
+        .collect();
+    write(robot, &sections, &stores, language)
+}
+
+/// Computes and stores all entries of a function beside the identification models.
+pub fn body_of(
+    robot: &Robot,
+    function: &Function,
+    argument: &'static str,
+    language: &dyn Language,
+) -> Body {
+    let sections = sections(robot, function.course());
+    let matrix = function.extents().0.is_some();
+    let rows = function.entries.iter().enumerate();
+    let stores: Vec<Store> = rows
+        .flat_map(|(row, values)| {
+            let values = values.iter().enumerate();
+            values.map(move |(column, &value)| (row, column, value))
+        })
+        .map(|(row, column, value)| Store {
+            argument,
+            row: matrix.then_some(row),
+            column,
+            value,
+            parameter: String::new(),
+            section: robot.ends.len() + 1,
+        })
+        .collect();
+    write(robot, &sections, &stores, language)
+}
+
+fn write(robot: &Robot, sections: &[Section], stores: &[Store], language: &dyn Language) -> Body {
+    let outputs: Vec<Expr> = stores.iter().map(|store| store.value).collect();
     let mut needed = schedule::order(&robot.graph, &outputs);
     needed.sort_unstable();
     let mut writer = Writer::new(&robot.graph, &outputs, language);
@@ -142,9 +177,11 @@ pub fn body(robot: &Robot, targets: &[Target], language: &dyn Language) -> Body 
             writer.name(node);
         }
     }
-    let statements = sections(robot)
-        .iter()
-        .flat_map(|section| self::section(robot, section, &needed, &stores, &mut writer))
+    let statements = (sections.iter().enumerate())
+        .flat_map(|(place, section)| {
+            let stores = stores.iter().filter(|store| store.section == place);
+            self::section(section, &needed, stores, &mut writer)
+        })
         .collect();
     parts::divide(&robot.graph, statements, &mut writer, language)
 }
@@ -165,18 +202,27 @@ pub(super) fn inputs(graph: &Graph, read: &[usize], trig: &[Trig]) -> Vec<Input>
 
 struct Store {
     argument: &'static str,
-    matrix: bool,
-    entry: Entry,
+    row: Option<usize>,
+    column: usize,
+    value: Expr,
+    parameter: String,
+    section: usize,
 }
 
-fn stores(robot: &Robot, target: Target) -> impl Iterator<Item = Store> {
+fn stores(robot: &Robot, target: Target, sections: &[Section]) -> Vec<Store> {
     let matrix = target.output.is_matrix();
+    let of_column = |column: usize| sections.iter().position(|s| s.columns.contains(&column));
     let entries = robot.entries(target.output).into_iter();
-    entries.map(move |entry| Store {
-        argument: target.argument,
-        matrix,
-        entry,
-    })
+    entries
+        .map(|entry| Store {
+            argument: target.argument,
+            row: matrix.then_some(entry.row),
+            column: entry.column,
+            value: entry.value,
+            parameter: robot.base.parameters[entry.column].name.clone(),
+            section: of_column(entry.column).unwrap_or(robot.ends.len()),
+        })
+        .collect()
 }
 
 /// A part of the function: the share of one link, or what comes after all links.
@@ -186,13 +232,14 @@ struct Section {
     columns: Vec<usize>,
 }
 
-/// One section per link, then one for the effects. A column belongs to the first section at whose
-/// end all its entries are known.
-fn sections(robot: &Robot) -> Vec<Section> {
+/// One section per link, then one for the effects, then one for what is beside the models. A
+/// column belongs to the first section at whose end all its entries are known.
+fn sections(robot: &Robot, course: &str) -> Vec<Section> {
     let links = robot.mechanism.joints.iter().enumerate();
     let mut sections: Vec<Section> = links
         .map(|(link, joint)| format!("Link {}, carried by {}.", link + 1, joint.name))
         .chain(["Drives, friction and other effects.".to_owned()])
+        .chain([course.to_owned()])
         .map(|title| Section {
             title,
             nodes: vec![],
@@ -223,9 +270,10 @@ fn places(robot: &Robot) -> Vec<usize> {
     let mut places: Vec<usize> = Vec::with_capacity(graph.nodes().len());
     for (index, &node) in graph.nodes().iter().enumerate() {
         let link = robot.ends.iter().position(|&end| index < end);
+        let beside = (index >= robot.models_end).then_some(robot.ends.len() + 1);
         let operands = schedule::operands(node).map(|operand| places[operand.node()]);
-        let place = link.or(operands.max()).unwrap_or(robot.ends.len());
-        places.push(place);
+        let place = link.or(beside).or(operands.max());
+        places.push(place.unwrap_or(robot.ends.len()));
     }
     places
 }
@@ -237,11 +285,10 @@ fn values(parameter: &BaseParameter) -> impl Iterator<Item = Expr> + '_ {
     entries.chain(columns.energy).chain(columns.power)
 }
 
-fn section(
-    robot: &Robot,
+fn section<'a>(
     section: &Section,
     needed: &[usize],
-    stores: &[Store],
+    stores: impl Iterator<Item = &'a Store>,
     writer: &mut Writer<'_>,
 ) -> Vec<Statement> {
     let mut statements = Vec::new();
@@ -252,22 +299,15 @@ fn section(
             statements.push(writer.statement(Line::Value { name, value }, Some(node)));
         }
     }
-    for Store {
-        argument,
-        matrix,
-        entry,
-    } in stores
-    {
-        if section.columns.contains(&entry.column) {
-            let line = Line::Store {
-                argument,
-                row: matrix.then_some(entry.row),
-                column: entry.column,
-                value: writer.value(entry.value),
-                parameter: robot.base.parameters[entry.column].name.clone(),
-            };
-            statements.push(writer.statement(line, None));
-        }
+    for store in stores {
+        let line = Line::Store {
+            argument: store.argument,
+            row: store.row,
+            column: store.column,
+            value: writer.value(store.value),
+            parameter: store.parameter.clone(),
+        };
+        statements.push(writer.statement(line, None));
     }
     if !statements.is_empty() {
         let title = Line::Section(section.title.clone());

@@ -9,7 +9,7 @@ use std::collections::{HashMap, HashSet};
 use super::function::{Body, Line, Part, Statement, inputs, trig};
 use super::language::Language;
 use super::statement::Writer;
-use crate::expr::{Graph, Node};
+use crate::expr::{Graph, Input, Node};
 
 /// Operations up to which a function stays in one piece: those of an arm of seven joints.
 const WHOLE: usize = 1500;
@@ -33,7 +33,8 @@ pub(super) fn divide(
     };
     let mut scratch = Scratch::new(graph, &pieces, language.computes_trig());
     let pieces = pieces.into_iter().enumerate();
-    let parts = pieces.map(|(index, piece)| part(graph, index, piece, &mut scratch, writer));
+    let parts =
+        pieces.map(|(index, piece)| part(graph, index, piece, &mut scratch, writer, language));
     Body {
         parts: parts.collect(),
         live: scratch.length,
@@ -136,6 +137,7 @@ fn part(
     statements: Vec<Statement>,
     scratch: &mut Scratch,
     writer: &mut Writer<'_>,
+    language: &dyn Language,
 ) -> Part {
     let read = read(&statements);
     let is_trig = |node: &usize| matches!(graph.nodes()[*node], Node::Sin(_) | Node::Cos(_));
@@ -162,12 +164,21 @@ fn part(
         lines.extend(keep(node, writer));
     }
     lines.extend(constants(graph, &read, writer));
+    for &node in &read {
+        if let Node::Input(input @ Input::Parameter(_)) = graph.nodes()[node] {
+            let (name, value) = (writer.name(node), language.input(input));
+            lines.push(Line::Value { name, value });
+        }
+    }
     for statement in statements {
         lines.push(statement.line);
         lines.extend(statement.defines.and_then(|node| keep(node, writer)));
     }
     let trig = trig(graph, &own);
-    let is_input = |node: &usize| matches!(graph.nodes()[*node], Node::Input(_));
+    let is_input = |node: &usize| match graph.nodes()[*node] {
+        Node::Input(input) => !matches!(input, Input::Parameter(_)),
+        _ => false,
+    };
     Part {
         inputs: inputs(graph, &read, &trig),
         reads_state: read.iter().any(|node| is_input(node) || is_trig(node)),

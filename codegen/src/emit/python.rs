@@ -1,19 +1,20 @@
 //! Python: one module over numpy, for one state or for many at once.
 
 use super::File;
-use super::function::{self, Line, Target};
+use super::function::Line;
 use super::language::Language;
-use super::signature::{self, Signature, has_slip};
+use super::signature::{Prototype, prototypes};
 use super::summary::summary;
 use super::text::{number, quoted, remark};
 use crate::expr::{Function, Input};
+use crate::functions::Extent;
 use crate::knowledge::Knowledge;
 use crate::robot::Robot;
 
 /// Words that a local variable cannot have: keywords, arguments, what a function calls.
 const RESERVED: &str = "False None True and as assert async await break class continue def del \
     elif else except finally for from global if import in is lambda nonlocal not or pass raise \
-    return try while with yield match case type np out q qd qdd slip D P R h dh \
+    return try while with yield match case type np out q qd qdd slip D P R h dh X tau M g T J \
     JOINTS PARAMETERS _signals";
 
 /// Python as a [`Language`].
@@ -31,8 +32,11 @@ impl Language for Python {
     }
 
     fn input(&self, input: Input) -> String {
-        let (signal, joint) = place(input);
-        format!("{signal}{}", joint + 1)
+        let (signal, place) = place(input);
+        match input {
+            Input::Parameter(_) => format!("{signal}[..., {place}]"),
+            _ => format!("{signal}{}", place + 1),
+        }
     }
 
     fn trig(&self, name: &str) -> String {
@@ -64,13 +68,14 @@ impl Language for Python {
     }
 }
 
-/// The signal and the joint of an input.
+/// The array and the place of an input.
 fn place(input: Input) -> (&'static str, usize) {
     match input {
         Input::Q(joint) => ("q", joint),
         Input::Qd(joint) => ("qd", joint),
         Input::Qdd(joint) => ("qdd", joint),
         Input::Slip(joint) => ("slip", joint),
+        Input::Parameter(column) => ("X", column),
     }
 }
 
@@ -84,7 +89,7 @@ pub fn python(robot: &Robot) -> File {
     text.push_str(USE);
     text.push_str(&tables(robot));
     text.push_str(HELPERS);
-    for signature in &signature::ALL {
+    for signature in &prototypes(robot) {
         text.push_str(&definition(robot, signature));
     }
     File {
@@ -168,17 +173,14 @@ fn tables(robot: &Robot) -> String {
     )
 }
 
-fn definition(robot: &Robot, signature: &Signature) -> String {
-    let target = Target {
-        output: signature.output,
-        argument: "out",
-    };
+fn definition(robot: &Robot, signature: &Prototype<'_>) -> String {
     let language = Python {
         joints: robot.mechanism.joints.len(),
     };
-    let body = function::body(robot, &[target], &language);
-    let mut text = opening(robot, signature);
-    for input in body.inputs() {
+    let body = signature.body(robot, "out", &language);
+    let mut text = opening(signature);
+    let signals = body.inputs().into_iter();
+    for input in signals.filter(|input| !matches!(input, Input::Parameter(_))) {
         let (signal, joint) = place(input);
         text.push_str(&format!(
             "    {signal}{} = {signal}[..., {joint}]\n",
@@ -199,42 +201,81 @@ fn definition(robot: &Robot, signature: &Signature) -> String {
 }
 
 /// `def`, docstring, and what every function begins with.
-fn opening(robot: &Robot, signature: &Signature) -> String {
-    let Signature {
+fn opening(signature: &Prototype<'_>) -> String {
+    let Prototype {
         name,
         summary,
         unit,
         ..
     } = signature;
     let signals = signature.signals.join(", ");
-    let arguments: Vec<String> = (signature.signals.iter())
-        .map(|signal| format!("{signal}: ArrayLike"))
+    let parameters = signature.parameters.then_some("X");
+    let arguments: Vec<String> = (signature.signals.iter().copied().chain(parameters))
+        .map(|argument| format!("{argument}: ArrayLike"))
         .collect();
     let arguments = arguments.join(", ");
-    let rows = if signature.matrix { "n, " } else { "" };
-    let one = if signature.matrix { "(n, nb)" } else { "(nb,)" };
-    let shape = if signature.matrix {
-        "q.shape"
-    } else {
-        "q.shape[:-1]"
-    };
-    let (slip, told, used) = match has_slip(robot) {
+    let (slip, told, used) = match signature.slip {
         true => (", slip: ArrayLike | None = None", SLIP, ", slip"),
         false => ("", "", ""),
     };
-    let prepared = match has_slip(robot) {
+    let prepared = match signature.slip {
         true => "    slip = np.sign(qd) if slip is None else slip\n",
         false => "",
     };
+    let (values, wanted) = match signature.parameters {
+        true => ("    X = np.asarray(X, dtype=np.float64)\n", WANTED),
+        false => ("", ""),
+    };
+    // One signal comes back as a tuple, too.
+    let comma = if signature.signals.len() == 1 {
+        ","
+    } else {
+        ""
+    };
+    let [one, many, shape] = shapes(signature);
     format!(
         "\n\ndef {name}({arguments}{slip}) -> NDArray[np.float64]:\n    \
          \"\"\"{summary}.\n\n    \
-         Takes {signals} of shape (n,) or (N, n), in rad or m and s.{told}\n    \
-         Returns the shape {one} or (N, {rows}nb), {unit}.\n    \"\"\"\n\
-         {prepared}    {signals}{used} = _signals({signals}{used})\n    \
-         out = np.zeros({shape} + (PARAMETERS,))\n"
+         Takes {signals} of shape (n,) or (N, n), in rad or m and s.{told}{wanted}\n    \
+         Returns the shape {one} or {many}, {unit}.\n    \"\"\"\n\
+         {prepared}    {signals}{used}{comma} = _signals({signals}{used})\n{values}    \
+         out = np.zeros({shape})\n"
     )
 }
+
+/// The shape for one state, for many, and as an expression.
+fn shapes(signature: &Prototype<'_>) -> [String; 3] {
+    let short = |extent: Extent| match extent {
+        Extent::Joints => "n".to_owned(),
+        Extent::Parameters => "nb".to_owned(),
+        Extent::Number(number) => number.to_string(),
+    };
+    let long = |extent: Extent| match extent {
+        Extent::Joints => "JOINTS".to_owned(),
+        Extent::Parameters => "PARAMETERS".to_owned(),
+        Extent::Number(number) => number.to_string(),
+    };
+    let columns = signature.columns;
+    match signature.rows {
+        Some(rows) => {
+            let (r, c) = (short(rows), short(columns));
+            let whole = match (rows, columns) {
+                (Extent::Joints, Extent::Parameters) => "q.shape + (PARAMETERS,)".to_owned(),
+                _ => format!("q.shape[:-1] + ({}, {})", long(rows), long(columns)),
+            };
+            [format!("({r}, {c})"), format!("(N, {r}, {c})"), whole]
+        }
+        None => {
+            let c = short(columns);
+            let whole = format!("q.shape[:-1] + ({},)", long(columns));
+            [format!("({c},)"), format!("(N, {c})"), whole]
+        }
+    }
+}
+
+/// What the docstrings of functions of base parameters say of them.
+const WANTED: &str = "
+    X are base parameters in the order of COLUMNS, of shape (nb,) or (N, nb).";
 
 /// What the docstrings of a robot whose friction has a memory say of it.
 const SLIP: &str = " Presliding
@@ -255,7 +296,11 @@ fn line(line: &Line) -> String {
             parameter,
         } => {
             let row = row.map_or(String::new(), |row| format!("{row}, "));
-            format!("    {argument}[..., {row}{column}] = {value}  # {parameter}\n")
+            let note = match parameter.as_str() {
+                "" => String::new(),
+                parameter => format!("  # {parameter}"),
+            };
+            format!("    {argument}[..., {row}{column}] = {value}{note}\n")
         }
     }
 }

@@ -6,7 +6,7 @@ use std::mem::take;
 use super::function::{Line, Statement};
 use super::language::Language;
 use super::naming::Names;
-use crate::expr::{Expr, Graph, Node, schedule};
+use crate::expr::{Expr, Graph, Input, Node, schedule};
 
 /// Operations in one expression beyond which a value gets a name of its own.
 const LONG: usize = 5;
@@ -110,6 +110,7 @@ impl<'a> Writer<'a> {
     /// A node where it is used: by its name, or written out.
     fn reference(&mut self, node: usize) -> (String, Level) {
         let text = match self.graph.nodes()[node] {
+            Node::Input(Input::Parameter(_)) => self.name(node),
             Node::Input(input) => self.language.input(input),
             Node::Sin(_) | Node::Cos(_) | Node::Constant(_) => self.leaf(node),
             _ if self.is_named(node) => self.name(node),

@@ -60,6 +60,8 @@ pub enum Input {
     Qdd(usize),
     /// Presliding state of a joint, z/zs: between -1 and 1, the sign of the velocity in sliding.
     Slip(usize),
+    /// A base parameter, by its column.
+    Parameter(usize),
 }
 
 /// Functions that are neither sums nor products. Each is odd or even.
@@ -164,10 +166,11 @@ impl Graph {
     /// Says what a value is, for readers of emitted code; the first name stays. A negated value
     /// gets the name with `neg_` before it, since the node is the positive one.
     pub fn name(&mut self, x: Expr, name: &str) {
-        let leaf = matches!(
-            self.nodes[x.node()],
-            Node::Input(_) | Node::Sin(_) | Node::Cos(_)
-        );
+        let leaf = match self.nodes[x.node()] {
+            Node::Input(Input::Parameter(_)) => false,
+            Node::Input(_) | Node::Sin(_) | Node::Cos(_) => true,
+            _ => false,
+        };
         if leaf || x.node == self.zero.node || x.node == self.one.node {
             return;
         }

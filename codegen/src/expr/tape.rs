@@ -84,6 +84,17 @@ impl Tape {
         }
     }
 
+    /// The same of a robot whose base parameters have these values; they are zero before.
+    #[must_use]
+    pub fn with_parameters(mut self, values: &[f64]) -> Tape {
+        for step in &mut self.steps {
+            if let Op::Input(Input::Parameter(column)) = step.op {
+                step.op = Op::Constant(values.get(column).copied().unwrap_or(0.0));
+            }
+        }
+        self
+    }
+
     /// Number of outputs.
     pub fn outputs(&self) -> usize {
         self.outputs

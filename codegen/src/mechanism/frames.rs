@@ -222,6 +222,7 @@ fn joint(
         theta,
         position: relative.translation.map(round).into(),
         gravity,
+        base: axis.parent.is_none().then_some(*frame),
         limits: axis.limits,
         bodies: axis
             .bodies

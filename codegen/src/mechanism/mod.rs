@@ -52,6 +52,9 @@ pub struct Joint {
     pub position: [f64; 3],
     /// Gravity in the antecedent's frame, m/s^2; only the first joints of the robot have one.
     pub gravity: Option<[f64; 3]>,
+    /// Pose at q = 0 in the frame of the description's base; only the first joints of the robot
+    /// have one.
+    pub base: Option<Pose>,
     /// Limits from the description.
     pub limits: Limits,
     /// The described bodies that move with this joint, each with its pose in the link frame.

@@ -7,7 +7,7 @@
 //! counted.
 
 mod search;
-mod transport;
+pub(crate) mod transport;
 
 use crate::base::BaseParameter;
 use crate::derive::ParameterKind;

@@ -91,12 +91,32 @@ pub fn shares(
         screws.push(screw);
         if let Frame::Turned(joint) = frame {
             // On to the antecedent's own origin, where the path goes next.
-            let position = constant(graph, mechanism.joints[joint].position);
-            let lever = cross(graph, position, screw.linear);
-            screw.angular = add(graph, screw.angular, lever);
+            screw = moved(graph, mechanism, joint, screw);
         }
     }
     screws
+}
+
+/// A wrench in a link's frame, in the frame of its antecedent.
+pub fn back(
+    graph: &mut Graph,
+    mechanism: &Mechanism,
+    motions: &mut Motions,
+    joint: usize,
+    wrench: Screw,
+) -> Screw {
+    let turned = turned(graph, mechanism, motions, joint, wrench);
+    moved(graph, mechanism, joint, turned)
+}
+
+/// A wrench at the place of a joint, about the origin of its antecedent.
+fn moved(graph: &mut Graph, mechanism: &Mechanism, joint: usize, wrench: Screw) -> Screw {
+    let position = constant(graph, mechanism.joints[joint].position);
+    let lever = cross(graph, position, wrench.linear);
+    Screw {
+        angular: add(graph, wrench.angular, lever),
+        ..wrench
+    }
 }
 
 /// A wrench in a link's frame, in the axes of the antecedent.

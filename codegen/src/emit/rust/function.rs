@@ -5,9 +5,10 @@ use quote::{format_ident, quote};
 
 use super::{comment, parsed};
 use crate::describe::identifier::KEYWORDS;
-use crate::emit::function::{self, Line, Target};
+use crate::emit::function::{self, Body, Line, Target};
 use crate::emit::language::Language;
-use crate::expr::{Function, Input};
+use crate::expr::{self, Input};
+use crate::functions::{Extent, Function, Quantity};
 use crate::robot::Robot;
 
 /// Rust as a [`Language`].
@@ -15,7 +16,21 @@ struct Rust;
 
 impl Language for Rust {
     fn reserved(&self) -> Vec<String> {
-        let arguments = ["x", "live", "d", "p", "r", "h", "dh"];
+        let arguments = [
+            "x",
+            "live",
+            "parameters",
+            "d",
+            "p",
+            "r",
+            "h",
+            "dh",
+            "tau",
+            "m",
+            "g",
+            "t",
+            "j",
+        ];
         let words = KEYWORDS.iter().chain(&arguments);
         words.map(|word| (*word).to_owned()).collect()
     }
@@ -26,6 +41,7 @@ impl Language for Rust {
             Input::Qd(joint) => format!("x.qd[{joint}]"),
             Input::Qdd(joint) => format!("x.qdd[{joint}]"),
             Input::Slip(joint) => format!("x.slip[{joint}]"),
+            Input::Parameter(column) => format!("parameters[{column}]"),
         }
     }
 
@@ -45,18 +61,18 @@ impl Language for Rust {
         false
     }
 
-    fn call(&self, function: Function, _: &str, x: &str) -> String {
+    fn call(&self, function: expr::Function, _: &str, x: &str) -> String {
         match function {
-            Function::Sign => format!("{x}.sign()"),
-            Function::Abs => format!("{x}.abs()"),
-            Function::Tanh => format!("{x}.tanh()"),
-            Function::Bell => format!("{x}.bell()"),
-            Function::Power(p) => {
+            expr::Function::Sign => format!("{x}.sign()"),
+            expr::Function::Abs => format!("{x}.abs()"),
+            expr::Function::Tanh => format!("{x}.tanh()"),
+            expr::Function::Bell => format!("{x}.bell()"),
+            expr::Function::Power(p) => {
                 let p = Literal::f64_unsuffixed(f64::from_bits(p));
                 format!("{x}.abs_power({p})")
             }
-            Function::Sine => format!("{x}.sin_cos().0"),
-            Function::Cosine => format!("{x}.sin_cos().1"),
+            expr::Function::Sine => format!("{x}.sin_cos().0"),
+            expr::Function::Cosine => format!("{x}.sin_cos().1"),
         }
     }
 }
@@ -75,7 +91,69 @@ pub struct Code {
 /// # Errors
 /// A message if an expression is not Rust: a defect of the generator.
 pub fn code(robot: &Robot, name: &str, targets: &[Target]) -> Result<Code, String> {
-    let body = function::body(robot, targets, &Rust);
+    let types: Vec<(&str, TokenStream)> = targets
+        .iter()
+        .map(|target| match target.output.is_matrix() {
+            true => (target.argument, quote! { [[T; PARAMETERS]; JOINTS] }),
+            false => (target.argument, quote! { [T; PARAMETERS] }),
+        })
+        .collect();
+    written(&function::body(robot, targets, &Rust), name, &types)
+}
+
+/// The function of a quantity beside the identification models, with its documentation.
+///
+/// # Errors
+/// As [`code`].
+pub fn beside(robot: &Robot, function: &Function) -> Result<TokenStream, String> {
+    let (name, argument) = match function.quantity {
+        Quantity::InverseDynamics => ("inverse_dynamics", "tau"),
+        Quantity::MassMatrix => ("mass_matrix", "m"),
+        Quantity::Gravity => ("gravity", "g"),
+        Quantity::Pose => ("pose", "t"),
+        Quantity::Jacobian => ("jacobian", "j"),
+    };
+    let name = match &function.tip {
+        Some(tip) => format!("{name}_{tip}"),
+        None => name.to_owned(),
+    };
+    let (rows, columns) = function.extents();
+    let columns = extent(columns);
+    let array = match rows.map(extent) {
+        Some(rows) => quote! { [[T; #columns]; #rows] },
+        None => quote! { [T; #columns] },
+    };
+    let body = function::body_of(robot, function, argument, &Rust);
+    let Code { body, parts } = written(&body, &name, &[(argument, array.clone())])?;
+    let parameters = function
+        .takes_parameters()
+        .then(|| quote! { parameters: &[T; PARAMETERS], });
+    let (name, argument) = (format_ident!("{name}"), format_ident!("{argument}"));
+    let docs = [
+        format!(" {}.", function.summary()),
+        String::new(),
+        format!(" Writes every entry; {}.", function.unit()),
+    ];
+    Ok(quote! {
+        #(#[doc = #docs])*
+        pub fn #name<T: Lane>(x: &State<T>, #parameters #argument: &mut #array) { #body }
+
+        #parts
+    })
+}
+
+fn extent(extent: Extent) -> TokenStream {
+    match extent {
+        Extent::Joints => quote! { JOINTS },
+        Extent::Parameters => quote! { PARAMETERS },
+        Extent::Number(number) => {
+            let number = Literal::usize_unsuffixed(number);
+            quote! { #number }
+        }
+    }
+}
+
+fn written(body: &Body, name: &str, types: &[(&str, TokenStream)]) -> Result<Code, String> {
     if let [only] = body.parts.as_slice() {
         return Ok(Code {
             body: only.lines.iter().map(line).collect::<Result<_, _>>()?,
@@ -91,24 +169,26 @@ pub fn code(robot: &Robot, name: &str, targets: &[Target]) -> Result<Code, Strin
         let name = format_ident!("{name}_{}", index + 1);
         let state = part.reads_state.then(|| quote! { x, });
         let taken = part.reads_state.then(|| quote! { x: &State<T>, });
-        let outputs = part.outputs().into_iter().map(|argument| {
-            let matrix = targets
-                .iter()
-                .any(|t| t.argument == argument && t.output.is_matrix());
-            let argument = format_ident!("{argument}");
-            let given = quote! { #argument };
-            match matrix {
-                true => (given, quote! { #argument: &mut [[T; PARAMETERS]; JOINTS] }),
-                false => (given, quote! { #argument: &mut [T; PARAMETERS] }),
-            }
-        });
-        let (given, outputs): (Vec<_>, Vec<_>) = outputs.unzip();
+        let reads = |input: &Input| matches!(input, Input::Parameter(_));
+        let reads = part.inputs.iter().any(reads);
+        let values = reads.then(|| quote! { parameters, });
+        let told = reads.then(|| quote! { parameters: &[T; PARAMETERS], });
+        let outputs = part.outputs();
+        let outputs = types
+            .iter()
+            .filter(|(argument, _)| outputs.contains(argument));
+        let (given, outputs): (Vec<_>, Vec<_>) = outputs
+            .map(|(argument, array)| {
+                let argument = format_ident!("{argument}");
+                (quote! { #argument }, quote! { #argument: &mut #array })
+            })
+            .unzip();
         let statements: TokenStream = part.lines.iter().map(line).collect::<Result<_, _>>()?;
         code.body
-            .extend(quote! { #name(#state &mut live, #(#given),*); });
+            .extend(quote! { #name(#state #values &mut live, #(#given),*); });
         code.parts.extend(quote! {
             #[inline(never)]
-            fn #name<T: Lane>(#taken live: &mut [T; #length], #(#outputs),*) { #statements }
+            fn #name<T: Lane>(#taken #told live: &mut [T; #length], #(#outputs),*) { #statements }
         });
     }
     Ok(code)
@@ -145,7 +225,7 @@ fn line(line: &Line) -> Result<TokenStream, String> {
             let row = row.map(Literal::usize_unsuffixed).into_iter();
             let column = Literal::usize_unsuffixed(*column);
             let value = parsed(value)?;
-            let note = comment::note(parameter);
+            let note = (!parameter.is_empty()).then(|| comment::note(parameter));
             quote! { #argument #([#row])* [#column] = #value; #note }
         }
     })

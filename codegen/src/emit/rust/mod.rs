@@ -106,6 +106,9 @@ fn functions(robot: &Robot) -> Result<TokenStream, String> {
     )?;
     let (h, h_parts) = code("energy", &[target(Output::Energy, "h")])?;
     let (dh, dh_parts) = code("power", &[target(Output::Power, "dh")])?;
+    let beside: TokenStream = (robot.functions.iter())
+        .map(|function| function::beside(robot, function))
+        .collect::<Result<_, _>>()?;
     Ok(quote! {
         #[doc = " D of the explicit model tau = D(q, qd, qdd) X (Gautier 1996, eq. 5)."]
         #[doc = ""]
@@ -135,6 +138,8 @@ fn functions(robot: &Robot) -> Result<TokenStream, String> {
         pub fn power<T: Lane>(x: &State<T>, dh: &mut [T; PARAMETERS]) { #dh }
 
         #dh_parts
+
+        #beside
     })
 }
 

@@ -42,10 +42,15 @@ pub fn state(robot: &Robot) -> Result<TokenStream, String> {
 
 /// Sines and cosines that any output needs.
 fn trig(robot: &Robot) -> Vec<angles::Trig> {
+    let beside = robot
+        .functions
+        .iter()
+        .flat_map(|f| f.entries.iter().flatten().copied());
     let values: Vec<_> = Output::ALL
         .into_iter()
         .flat_map(|output| robot.entries(output))
         .map(|entry| entry.value)
+        .chain(beside)
         .collect();
     let mut needed = schedule::order(&robot.graph, &values);
     needed.sort_unstable();

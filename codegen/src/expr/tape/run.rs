@@ -149,6 +149,7 @@ fn read(batch: &Batch<'_>, input: Input, start: usize, width: usize) -> Register
             return read_series(batch, batch.qd, joint, start, width).map(sign);
         }
         Input::Slip(joint) => (batch.slip, joint),
+        Input::Parameter(_) => return Register::ZERO,
     };
     read_series(batch, series, joint, start, width)
 }
