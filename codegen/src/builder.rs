@@ -21,6 +21,7 @@ use std::path::{Path, PathBuf};
 use crate::base::BaseError;
 use crate::describe::{self, Description, Diagnostic};
 use crate::emit;
+use crate::functions::Group;
 use crate::robot::Robot;
 use crate::source::Source;
 
@@ -29,6 +30,7 @@ use crate::source::Source;
 pub struct Builder {
     robots: Vec<PathBuf>,
     folders: Vec<PathBuf>,
+    groups: Vec<Group>,
     out: Option<PathBuf>,
 }
 
@@ -98,6 +100,14 @@ impl Builder {
         self
     }
 
+    /// Adds functions beside the identification models to every module: inverse dynamics, mass
+    /// matrix and gravity, or pose and Jacobian.
+    #[must_use]
+    pub fn with(mut self, group: Group) -> Builder {
+        self.groups.push(group);
+        self
+    }
+
     /// Writes to this folder instead of `OUT_DIR/idim`.
     #[must_use]
     pub fn out_dir(mut self, folder: impl Into<PathBuf>) -> Builder {
@@ -119,8 +129,9 @@ impl Builder {
         let sources = self.sources()?;
         std::fs::create_dir_all(&out).map_err(|error| io(&out, error))?;
         for source in &sources {
-            let text = emit::rust(&source.robot).map_err(BuildError::Emission)?;
-            let name = &source.robot.mechanism.name;
+            let robot = source.robot.clone().with(&self.groups);
+            let text = emit::rust(&robot).map_err(BuildError::Emission)?;
+            let name = &robot.mechanism.name;
             write_if_changed(&out.join(format!("{name}.rs")), &text)?;
         }
         let index = emit::index(&sources).map_err(BuildError::Emission)?;

@@ -14,7 +14,9 @@ use std::process::{Command, Stdio};
 use idim_codegen::builder;
 use idim_codegen::emit::signals::signals;
 use idim_codegen::emit::{self, signature};
+use idim_codegen::expr::Expr;
 use idim_codegen::expr::tape::{Batch, Tape};
+use idim_codegen::functions::{Extent, Group};
 use idim_codegen::robot::{Output, Robot};
 use rand::{RngExt, SeedableRng};
 
@@ -24,6 +26,7 @@ mod made_up;
 /// Rounding of the functions of another library, through sums of some hundred terms.
 const TOLERANCE: f64 = 1e-13;
 const SAMPLES: usize = 100;
+const FUNCTIONS: [Group; 2] = [Group::Dynamics, Group::Kinematics];
 
 fn built_in(name: &str) -> Robot {
     let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../robots");
@@ -85,7 +88,7 @@ fn odd() -> Robot {
     builder::read_texts(&[("odd.toml", text)]).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Signals of random states, sample by sample: q, qd, qdd, slip, joint by joint.
+/// Random states, sample by sample: q, qd, qdd, slip, joint by joint, then base parameters.
 fn states(robot: &Robot) -> Vec<Vec<f64>> {
     let mut random = rand::rngs::StdRng::seed_from_u64(6);
     let joints = robot.mechanism.joints.len();
@@ -93,9 +96,12 @@ fn states(robot: &Robot) -> Vec<Vec<f64>> {
     (0..SAMPLES)
         .map(|_| {
             let draw = |k: usize| limits[k / joints];
-            (0..4 * joints)
+            let mut state: Vec<f64> = (0..4 * joints)
                 .map(|k| random.random_range(-draw(k)..draw(k)))
-                .collect()
+                .collect();
+            let parameters = robot.base.parameters.iter();
+            state.extend(parameters.map(|_| random.random_range(-1.0..1.0)));
+            state
         })
         .collect()
 }
@@ -103,27 +109,37 @@ fn states(robot: &Robot) -> Vec<Vec<f64>> {
 /// All outputs of the interpreter, sample by sample, in the order of the functions, row by row.
 fn interpreted(robot: &Robot, states: &[Vec<f64>]) -> Vec<Vec<Vec<f64>>> {
     let (n, nb) = (robot.mechanism.joints.len(), robot.base.parameters.len());
-    let of = |state: &[f64], signature: &signature::Signature| {
-        let signals = signals(robot, signature.output);
-        let mut values = vec![0.0; signals.values.len()];
+    let values = |values: &[Expr], state: &[f64]| {
+        let mut out = vec![0.0; values.len()];
         let batch = Batch {
             len: 1,
             q: &state[..n],
             qd: &state[n..2 * n],
             qdd: &state[2 * n..3 * n],
-            slip: &state[3 * n..],
+            slip: &state[3 * n..4 * n],
         };
-        Tape::new(&robot.graph, &signals.values).run(&batch, &mut values);
+        let tape = Tape::new(&robot.graph, values).with_parameters(&state[4 * n..]);
+        tape.run(&batch, &mut out);
+        out
+    };
+    let model = |state: &[f64], signature: &signature::Signature| {
+        let signals = signals(robot, signature.output);
+        let values = values(&signals.values, state);
         let mut dense = vec![0.0; if signature.matrix { n * nb } else { nb }];
         for (row, column, signal) in signals.entries {
             dense[row * nb + column] = values[signal];
         }
         dense
     };
-    states
-        .iter()
-        .map(|state| signature::ALL.iter().map(|s| of(state, s)).collect())
-        .collect()
+    let all = |state: &Vec<f64>| {
+        let models = signature::ALL.iter().map(|s| model(state, s));
+        let beside = robot.functions.iter().map(|function| {
+            let entries: Vec<Expr> = function.entries.iter().flatten().copied().collect();
+            values(&entries, state)
+        });
+        models.chain(beside).collect()
+    };
+    states.iter().map(all).collect()
 }
 
 /// Numbers separated by spaces.
@@ -154,7 +170,7 @@ fn compare(robot: &Robot, states: &[Vec<f64>], printed: &str) {
         .split_whitespace()
         .map(|n| n.parse::<f64>().unwrap());
     for (sample, outputs) in interpreted(robot, states).iter().enumerate() {
-        for (signature, expected) in signature::ALL.iter().zip(outputs) {
+        for (signature, expected) in signature::prototypes(robot).iter().zip(outputs) {
             let scale = expected.iter().fold(0.0f64, |scale, x| scale.max(x.abs()));
             for (place, expected) in expected.iter().enumerate() {
                 let found = numbers.next().unwrap();
@@ -172,22 +188,31 @@ fn compare(robot: &Robot, states: &[Vec<f64>], printed: &str) {
 
 /// A program that reads states and prints all outputs.
 fn c_program(robot: &Robot) -> String {
-    let slip = signature::has_slip(robot);
     let name = &robot.mechanism.name;
     let upper = name.to_uppercase();
     let mut calls = String::new();
-    for signature in &signature::ALL {
-        let slip = slip.then_some("slip");
-        let inputs: Vec<&str> = signature.signals.iter().copied().chain(slip).collect();
-        let (rows, value, count) = match signature.matrix {
-            true => ("[N]", "out[k / NB][k % NB]", "N * NB"),
-            false => ("", "out[k]", "NB"),
+    for signature in &signature::prototypes(robot) {
+        let parameters = signature.parameters.then_some("X");
+        let inputs: Vec<&str> = signature.all_signals().chain(parameters).collect();
+        let extent = |extent| match extent {
+            Extent::Joints => "N".to_owned(),
+            Extent::Parameters => "NB".to_owned(),
+            Extent::Number(number) => number.to_string(),
+        };
+        let columns = extent(signature.columns);
+        let (rows, value, count) = match signature.rows.map(extent) {
+            Some(rows) => (
+                format!("[{rows}]"),
+                format!("out[k / {columns}][k % {columns}]"),
+                format!("{rows} * {columns}"),
+            ),
+            None => (String::new(), "out[k]".to_owned(), columns.clone()),
         };
         // What was there before must not stay.
-        let function = signature.name;
+        let function = &signature.name;
         write!(
             calls,
-            "{{ double out{rows}[NB]; for (int k = 0; k < {count}; k++) {value} = 99.0;\n\
+            "{{ double out{rows}[{columns}]; for (int k = 0; k < {count}; k++) {value} = 99.0;\n\
              {name}_{function}({}, out);\n\
              for (int k = 0; k < {count}; k++) printf(\"%.17g \", {value}); }}\n",
             inputs.join(", ")
@@ -198,10 +223,10 @@ fn c_program(robot: &Robot) -> String {
         "#include <stdio.h>\n#include \"{name}.h\"\n\
          #define N {upper}_JOINTS\n#define NB {upper}_PARAMETERS\n\
          int main(void) {{\n\
-         double all[4 * N]; const double *q = all, *qd = all + N, *qdd = all + 2 * N;\n\
-         const double *slip = all + 3 * N; (void)slip;\n\
+         double all[4 * N + NB]; const double *q = all, *qd = all + N, *qdd = all + 2 * N;\n\
+         const double *slip = all + 3 * N, *X = all + 4 * N; (void)slip; (void)X;\n\
          if (sizeof {name}_columns / sizeof {name}_columns[0] != NB) return 2;\n\
-         for (;;) {{ for (int k = 0; k < 4 * N; k++) if (scanf(\"%lf\", all + k) != 1) return 0;\n\
+         for (;;) {{ for (int k = 0; k < 4 * N + NB; k++) if (scanf(\"%lf\", all + k) != 1) return 0;\n\
          {calls} }} }}\n"
     )
 }
@@ -279,12 +304,14 @@ import numpy as np
 import MODULE as robot
 
 n, nb = robot.JOINTS, robot.PARAMETERS
-states = np.array(sys.stdin.read().split(), dtype=float).reshape(-1, 4, n)
-q, qd, qdd, slip = np.moveaxis(states, 1, 0)
+states = np.array(sys.stdin.read().split(), dtype=float).reshape(-1, 4 * n + nb)
+q, qd, qdd, slip = np.moveaxis(states[:, : 4 * n].reshape(-1, 4, n), 1, 0)
+X = states[:, 4 * n :]
 extra = [slip] if HAS_SLIP else []
 many = [robot.D(q, qd, qdd, *extra)]
 many += [f(q, qd, *extra) for f in (robot.P, robot.R, robot.h, robot.dh)]
 assert [x.shape for x in many] == [(len(q), n, nb)] * 3 + [(len(q), nb)] * 2
+CALLS
 one = robot.D(list(q[0]), qd[0], qdd[0], *[x[0] for x in extra])
 assert one.shape == (n, nb) and np.allclose(one, many[0][0], rtol=1e-14, atol=1e-14)
 assert len(robot.COLUMNS) == nb == len(robot.NOMINAL) and len(robot.JOINT_NAMES) == n
@@ -309,7 +336,27 @@ fn check_python(robot: &Robot) {
     } else {
         "False"
     };
+    let calls: String = (signature::prototypes(robot)
+        .iter()
+        .skip(signature::ALL.len()))
+    .map(|signature| {
+        let slip = if signature.slip { ", *extra" } else { "" };
+        let parameters = signature.parameters.then_some("X");
+        let inputs: Vec<&str> = signature
+            .signals
+            .iter()
+            .copied()
+            .chain(parameters)
+            .collect();
+        format!(
+            "many.append(robot.{}({}{slip}))\n",
+            signature.name,
+            inputs.join(", ")
+        )
+    })
+    .collect();
     let program = PYTHON_PROGRAM
+        .replace("CALLS", &calls)
         .replace("MODULE", &robot.mechanism.name)
         .replace("HAS_SLIP", slip);
     std::fs::write(folder.path().join("main.py"), program).unwrap();
@@ -344,8 +391,8 @@ robots! {
     scara: built_in("scara");
     ur10e: built_in("ur10e");
     panda: built_in("panda");
-    thirty_joints: humanoid();
-    robot_with_every_function_and_odd_names: odd();
+    thirty_joints_with_functions: humanoid().with(&FUNCTIONS);
+    every_function_and_odd_names: odd().with(&FUNCTIONS);
 }
 
 #[test]
@@ -390,5 +437,5 @@ fn long_functions_come_in_parts_of_bounded_length() {
 /// The description is read by Rust too: the words that break it are the same kind.
 #[test]
 fn rust_of_a_robot_with_odd_names_is_rust() {
-    emit::rust(&odd()).unwrap_or_else(|error| panic!("{error}"));
+    emit::rust(&odd().with(&FUNCTIONS)).unwrap_or_else(|error| panic!("{error}"));
 }

@@ -93,7 +93,9 @@ struct State {
 fn state(robot: &Robot, seed: u64) -> State {
     let mut random = rand::rngs::StdRng::seed_from_u64(seed);
     let mut draw = |count: usize, size: f64| -> Vec<f64> {
-        (0..count).map(|_| random.random_range(-size..size)).collect()
+        (0..count)
+            .map(|_| random.random_range(-size..size))
+            .collect()
     };
     let n = robot.mechanism.joints.len();
     State {
@@ -126,7 +128,8 @@ fn evaluate(robot: &Robot, function: &Function, state: &State) -> DMatrix<f64> {
 
 fn of(robot: &Robot, quantity: Quantity) -> Vec<&Function> {
     let all = robot.functions.iter();
-    all.filter(|function| function.quantity == quantity).collect()
+    all.filter(|function| function.quantity == quantity)
+        .collect()
 }
 
 /// D X.
@@ -174,7 +177,12 @@ fn gravity_is_the_torque_at_rest_without_friction() {
             }
         }
         let expected = torques(&robot, &state);
-        check(&robot.mechanism.name, gravity.as_slice(), &expected, TOLERANCE);
+        check(
+            &robot.mechanism.name,
+            gravity.as_slice(),
+            &expected,
+            TOLERANCE,
+        );
     }
 }
 
@@ -187,14 +195,19 @@ fn columns_of_the_mass_matrix_are_torques_of_unit_accelerations() {
         state.qd.fill(0.0);
         state.qdd.fill(0.0);
         let rest = torques(&robot, &state);
-        let scale = matrix.amax().max(rest.iter().fold(0.0, |a: f64, b| a.max(b.abs())));
+        let scale = matrix
+            .amax()
+            .max(rest.iter().fold(0.0, |a: f64, b| a.max(b.abs())));
         for joint in 0..state.q.len() {
             state.qdd.fill(0.0);
             state.qdd[joint] = 1.0;
             for (row, (with, without)) in torques(&robot, &state).iter().zip(&rest).enumerate() {
                 let error = (matrix[(row, joint)] - (with - without)).abs();
                 let name = &robot.mechanism.name;
-                assert!(error <= TOLERANCE * scale, "{name} M[{row}][{joint}]: {error:e}");
+                assert!(
+                    error <= TOLERANCE * scale,
+                    "{name} M[{row}][{joint}]: {error:e}"
+                );
             }
         }
     }
@@ -223,7 +236,12 @@ fn jacobian_is_the_derivative_of_the_pose() {
                     [turn[(2, 1)], turn[(0, 2)], turn[(1, 0)]],
                 ];
                 let column: Vec<f64> = ours.column(joint).iter().copied().collect();
-                check(&robot.mechanism.name, &column, expected.as_flattened(), 1e-8);
+                check(
+                    &robot.mechanism.name,
+                    &column,
+                    expected.as_flattened(),
+                    1e-8,
+                );
             }
         }
     }
@@ -269,7 +287,9 @@ fn composed(robot: &Robot, q: &[f64]) -> Vec<(String, Pose)> {
             found[root] = Some(Pose::identity());
             while found.iter().any(Option::is_none) {
                 for joint in &tree.joints {
-                    let Some(parent) = found[joint.parent] else { continue };
+                    let Some(parent) = found[joint.parent] else {
+                        continue;
+                    };
                     let axis = Unit::new_normalize(Vector3::from(joint.axis));
                     let turn: Matrix3<f64> =
                         Rotation3::from_axis_angle(&axis, position(&joint.name)).into_inner();
@@ -301,7 +321,9 @@ fn pose_is_that_of_the_description_joint_by_joint() {
             let (_, pose) = bodies.iter().find(|(name, _)| *name == body).unwrap();
             let mut expected = DMatrix::identity(4, 4);
             expected.view_mut((0, 0), (3, 3)).copy_from(&pose.rotation);
-            expected.view_mut((0, 3), (3, 1)).copy_from(&pose.translation);
+            expected
+                .view_mut((0, 3), (3, 1))
+                .copy_from(&pose.translation);
             let ours = evaluate(&robot, function, &state);
             check(&body, ours.as_slice(), expected.as_slice(), TOLERANCE);
         }
@@ -317,12 +339,47 @@ fn functions_are_there_for_those_who_ask_alone() {
     let (plain, with) = [plain, with]
         .map(|robot| idim_codegen::emit::rust(&robot).unwrap())
         .into();
-    let names = ["inverse_dynamics", "mass_matrix", "gravity", "pose", "jacobian"];
+    let names = [
+        "inverse_dynamics",
+        "mass_matrix",
+        "gravity",
+        "pose",
+        "jacobian",
+    ];
     let heads = names.map(|name| format!("pub fn {name}<"));
-    assert!(heads.iter().all(|head| !plain.contains(head) && with.contains(head)));
+    assert!(
+        heads
+            .iter()
+            .all(|head| !plain.contains(head) && with.contains(head))
+    );
     let explicit = |text: &str| {
         let body = text.split_once("pub fn explicit").unwrap().1;
         body.split_once("\n}").unwrap().0.to_owned()
     };
     assert_eq!(explicit(&plain), explicit(&with));
+}
+
+/// Torques come from Newton and Euler, not from the regressor.
+#[test]
+fn inverse_dynamics_costs_less_than_the_regressor() {
+    for robot in robots().iter().filter(|r| r.mechanism.joints.len() > 5) {
+        let cost = |entries: Vec<Expr>| {
+            let count = expr::Operations::of(&robot.graph, &entries);
+            count.mul + count.add
+        };
+        let entries = robot.entries(Output::Explicit);
+        let times_x = 2 * entries.len() - robot.mechanism.joints.len();
+        let regressor = times_x + cost(entries.iter().map(|entry| entry.value).collect());
+        let of = |quantity| cost(of(robot, quantity)[0].entries.concat());
+        let torque = of(Quantity::InverseDynamics);
+        println!(
+            "{}: D X {regressor}, tau {torque}, M {}, g {}, T {}, J {}",
+            robot.mechanism.name,
+            of(Quantity::MassMatrix),
+            of(Quantity::Gravity),
+            of(Quantity::Pose),
+            of(Quantity::Jacobian)
+        );
+        assert!(10 * torque < 7 * regressor, "{torque} of {regressor}");
+    }
 }

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::ValueEnum;
 use idim::codegen::Robot;
 use idim::codegen::emit::{self, File};
+use idim::codegen::functions::Group;
 
 use super::{Failure, output, robot};
 
@@ -21,6 +22,15 @@ enum Language {
     Par,
 }
 
+/// Functions beside the identification models.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Functions {
+    /// Inverse dynamics, mass matrix and gravity of given base parameters.
+    Dynamics,
+    /// Pose and Jacobian of every tip.
+    Kinematics,
+}
+
 /// Arguments of `idim generate`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
@@ -29,6 +39,9 @@ pub struct Arguments {
     /// Language of the code.
     #[arg(long, value_enum, default_value = "rust")]
     language: Language,
+    /// Further functions, beside the identification models.
+    #[arg(long, value_enum, value_delimiter = ',')]
+    with: Vec<Functions>,
     /// File to write, or folder to write into; standard output if absent.
     #[arg(short, long, value_name = "FILE|DIR")]
     output: Option<PathBuf>,
@@ -39,7 +52,12 @@ pub struct Arguments {
 /// # Errors
 /// [`Failure`] when the robot cannot be read or the code not be written.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let robot = robot::derived(&arguments.robot)?;
+    let groups = arguments.with.iter().map(|functions| match functions {
+        Functions::Dynamics => Group::Dynamics,
+        Functions::Kinematics => Group::Kinematics,
+    });
+    let groups: Vec<Group> = groups.collect();
+    let robot = robot::derived(&arguments.robot)?.with(&groups);
     match &arguments.output {
         Some(path) => write(path, files(&robot, arguments.language)?),
         None => output::print(&text(&robot, arguments.language)?),
