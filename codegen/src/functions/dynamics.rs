@@ -147,13 +147,13 @@ fn rotors(graph: &mut Graph, base: &[BaseParameter], matrix: &mut [Vec<Expr>]) {
     let inertial = |p: &BaseParameter| matches!(p.kind, ParameterKind::Inertial(_));
     for (column, parameter) in base.iter().enumerate().filter(|(_, p)| !inertial(p)) {
         for &(row, momentum) in &parameter.columns.momentum {
-            for joint in 0..matrix.len() {
+            for (joint, place) in matrix[row].iter_mut().enumerate() {
                 let share = slope(graph, momentum, joint);
                 if share != 0.0 {
                     let value = graph.input(Input::Parameter(column));
                     graph.name(value, &parameter.name.to_lowercase());
                     let term = graph.scale(share, value);
-                    matrix[row][joint] = graph.add(matrix[row][joint], term);
+                    *place = graph.add(*place, term);
                 }
             }
         }

@@ -49,6 +49,7 @@ impl Values {
                 Node::Input(Input::Qd(joint)) => Dual(qd[joint], qdd[joint]),
                 Node::Input(Input::Qdd(joint)) => Dual(qdd[joint], 0.0),
                 Node::Input(Input::Slip(joint)) => Dual(qd[joint].signum(), 0.0),
+                Node::Input(Input::Parameter(_)) => Dual(0.0, 0.0),
                 Node::Sin(index) => sin_cos(graph, index, q, qd).0,
                 Node::Cos(index) => sin_cos(graph, index, q, qd).1,
                 Node::Add(a, b) => values.of(a) + values.of(b),
