@@ -108,14 +108,78 @@ fn orthogonalise(columns: &[DVector<f64>], threshold: f64) -> Vec<f64> {
     residuals
 }
 
-/// Names of the columns whose residual is nearest to the threshold.
+/// What is left of a unit column that is nearly dependent: more than rounding, less than this.
+const NEARLY: std::ops::Range<f64> = 1e-13..1e-3;
+
+/// Names of the columns that are nearly dependent, those nearest to the threshold first; where
+/// there are none, of whatever is nearest to it.
 fn near(live: &[usize], residuals: &[f64], threshold: f64, all: &[Standard]) -> Vec<String> {
     let mut order: Vec<usize> = (0..live.len()).collect();
     let distance = |index: usize| (residuals[index].max(f64::EPSILON) / threshold).ln().abs();
     order.sort_by(|&a, &b| distance(a).total_cmp(&distance(b)));
+    let nearly = |index: &usize| NEARLY.contains(&residuals[*index]);
+    if order.iter().any(nearly) {
+        order.retain(nearly);
+    }
     order
         .into_iter()
         .take(6)
         .map(|index| all[live[index]].name.clone())
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::derive::{Columns, ParameterKind};
+
+    fn named(names: &[String]) -> Vec<Standard> {
+        let of = |name: &String| Standard {
+            name: name.clone(),
+            unit: "kg",
+            meaning: String::new(),
+            link: 0,
+            kind: ParameterKind::Effect,
+            columns: Columns::default(),
+        };
+        names.iter().map(of).collect()
+    }
+
+    /// Columns e_0 and e_0 + step^k e_k for k = 1, 2, ...
+    fn ladder(count: i32, step: f64) -> DMatrix<f64> {
+        DMatrix::from_fn(20, count as usize, |row, column| {
+            let own = step.powi(column as i32);
+            let first = if row == 0 { 1.0 } else { 0.0 };
+            first + if row == column && row > 0 { own } else { 0.0 }
+        })
+    }
+
+    fn split_of(w: &DMatrix<f64>) -> Result<Split, BaseError> {
+        let names: Vec<String> = (0..w.ncols()).map(|column| format!("X{column}")).collect();
+        let priority: Vec<usize> = (0..w.ncols()).collect();
+        split(w, &priority, &named(&names))
+    }
+
+    #[test]
+    fn clear_rank_comes_with_its_gap() {
+        let mut w = ladder(3, 0.5);
+        let twice = w.column(1) * 2.0;
+        w = w.insert_column(3, 0.0);
+        w.set_column(3, &twice);
+        let split = split_of(&w).unwrap_or_else(|error| unreachable!("{error}"));
+        assert_eq!((split.kept, split.dependent), (vec![0, 1, 2], vec![3]));
+        assert!(split.gap > 1e10, "{}", split.gap);
+    }
+
+    #[test]
+    fn columns_that_are_neither_dependent_nor_independent_are_named() {
+        // Singular values fall by a hundred from each to the next, down to rounding.
+        let Err(BaseError::NoGap { gap, columns }) = split_of(&ladder(8, 1e-2)) else {
+            unreachable!("a rank was found");
+        };
+        assert!(gap < LEAST_GAP, "{gap}");
+        assert_eq!(columns, ["X2", "X3", "X4", "X5", "X6"]);
+        let error = BaseError::NoGap { gap, columns }.to_string();
+        assert!(error.contains("nearly dependent: X2, X3"), "{error}");
+    }
 }
