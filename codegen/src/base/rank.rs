@@ -182,4 +182,30 @@ mod tests {
         let error = BaseError::NoGap { gap, columns }.to_string();
         assert!(error.contains("nearly dependent: X2, X3"), "{error}");
     }
+
+    /// Number of base parameters and the gap of a planar arm whose second axis is tilted.
+    fn tilted(alpha: &str) -> (usize, f64) {
+        let joint = |ant: usize, alpha: &str, d: f64| {
+            format!(
+                "[[joint]]\nname = \"j{ant}\"\nkind = \"revolute\"\nant = {ant}\n\
+                 alpha = \"{alpha}\"\nd = {d}\n"
+            )
+        };
+        let rows = [joint(0, "0", 0.0), joint(1, alpha, 0.3), joint(2, "0", 0.4)];
+        let text = format!("name = \"arm\"\neffects = []\n{}", rows.concat());
+        let robot = crate::builder::read_texts(&[("arm.toml", &text)]);
+        let robot = robot.unwrap_or_else(|error| unreachable!("{error}"));
+        (robot.base.parameters.len(), robot.base.gap)
+    }
+
+    #[test]
+    fn nearly_parallel_axes_are_parallel_and_tilted_ones_have_a_clear_rank() {
+        let (parallel, gap) = tilted("0");
+        assert!(gap > 1e12, "{gap:e}");
+        let (nearly, gap) = tilted("1e-9");
+        assert_eq!(nearly, parallel);
+        assert!(gap > 1e12, "{gap:e}");
+        let (tilted, gap) = tilted("2e-3");
+        assert!(tilted > parallel && gap > 1e9, "{tilted}, {gap:e}");
+    }
 }
