@@ -41,7 +41,7 @@ impl Interpreter {
         let compiled = |output| compile(robot, &signals(robot, output));
         Interpreter {
             name: robot.mechanism.name.clone(),
-            joints: robot.mechanism.joints.iter().map(joint).collect(),
+            joints: robot.mechanism.driven().iter().map(joint).collect(),
             columns: robot.base.parameters.iter().map(column).collect(),
             settings: settings(robot),
             knowledge: knowledge(robot),

@@ -109,6 +109,20 @@ impl Lane for Dual {
             rate: slope * self.rate,
         }
     }
+    fn reciprocal(self) -> Dual {
+        let value = self.value.recip();
+        Dual {
+            value,
+            rate: -value * value * self.rate,
+        }
+    }
+    fn root(self) -> Dual {
+        let value = self.value.sqrt();
+        Dual {
+            value,
+            rate: 0.5 * self.rate / value,
+        }
+    }
 }
 
 const STATES: usize = 200;

@@ -25,6 +25,10 @@ pub trait Lane:
     fn bell(self) -> Self;
     /// |x|^p for a constant p > 0.
     fn abs_power(self, p: f64) -> Self;
+    /// 1/x.
+    fn reciprocal(self) -> Self;
+    /// Square root; NaN below 0.
+    fn root(self) -> Self;
 }
 
 macro_rules! scalar {
@@ -56,6 +60,12 @@ macro_rules! scalar {
             }
             fn abs_power(self, p: f64) -> Self {
                 <$t>::abs(self).powf(p as $t)
+            }
+            fn reciprocal(self) -> Self {
+                self.recip()
+            }
+            fn root(self) -> Self {
+                self.sqrt()
             }
         }
     };
@@ -89,6 +99,12 @@ impl Lane for f64x4 {
     fn abs_power(self, p: f64) -> Self {
         f64x4::from(self.to_array().map(|x| x.abs_power(p)))
     }
+    fn reciprocal(self) -> Self {
+        f64x4::splat(1.0) / self
+    }
+    fn root(self) -> Self {
+        f64x4::sqrt(self)
+    }
 }
 
 #[cfg(test)]
@@ -109,6 +125,8 @@ mod tests {
                 assert_eq!(Lane::tanh(lanes).to_array()[i], x.tanh());
                 assert_eq!(lanes.bell().to_array()[i], (-x * x).exp());
                 assert_eq!(lanes.abs_power(1.5).to_array()[i], x.abs().powf(1.5));
+                assert_eq!(lanes.reciprocal().to_array()[i], x.recip());
+                assert_eq!(lanes.abs().root().to_array()[i], x.abs().sqrt());
             }
         }
     }

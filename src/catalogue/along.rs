@@ -126,7 +126,7 @@ impl<'a> Along<'a> {
     ) -> Vec<TorqueColumn> {
         let mut graph = Graph::new();
         let robot = &self.effects.robot.mechanism;
-        let kinds: Vec<JointKind> = robot.joints.iter().map(|joint| joint.kind).collect();
+        let kinds: Vec<JointKind> = robot.driven().iter().map(|joint| joint.kind).collect();
         let effect = mechanism::Effect {
             kind,
             joints: joints.to_vec(),

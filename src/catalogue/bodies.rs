@@ -59,9 +59,14 @@ pub(super) static PAYLOAD: Effect = Effect {
     implausible: |_| None,
 };
 
-/// On the last joint, whose link carries it, if anything moves at all.
+/// On the joint whose link carries it, the last with a drive before the tool, if anything moves at
+/// all.
 fn on_last_link(effects: &Effects, reach: &Reach<'_>) -> Vec<Hypothesis> {
-    let last = effects.joints().saturating_sub(1);
+    let mechanism = &effects.robot.mechanism;
+    let chain = mechanism.tool().map(|tool| mechanism.chain(tool));
+    let mut outwards = chain.into_iter().flatten().rev();
+    let last = outwards.find(|&joint| joint < mechanism.driven);
+    let last = last.unwrap_or_default();
     let moves = reach.moving().next();
     moves.map(|_| plain(vec![last])).into_iter().collect()
 }
@@ -78,7 +83,7 @@ fn whole_robot(_: &Effects, reach: &Reach<'_>) -> Vec<Hypothesis> {
 
 /// The columns of the last link that are not zero.
 fn payload(along: &Along<'_>, _: &[usize], _: &[f64]) -> Vec<TorqueColumn> {
-    let last = along.effects.joints().saturating_sub(1);
+    let last = along.effects.robot.mechanism.tool().unwrap_or_default();
     let all = along.effects.tool().columns(&along.motion());
     let own = all.into_iter().skip(10 * last).take(10).enumerate();
     let column = |(place, torque): (usize, Vec<(usize, Vec<f64>)>)| TorqueColumn {
@@ -181,7 +186,7 @@ pub(super) static EXTERNAL_FORCE: Effect = Effect {
 /// A force on a point is the weight of a unit mass there under unit gravity along the force.
 fn force(along: &Along<'_>, gravity: &[super::Linear; 3]) -> Vec<TorqueColumn> {
     let robot = &along.effects.robot.mechanism;
-    let Some(last) = robot.joints.len().checked_sub(1) else {
+    let Some(last) = robot.tool() else {
         return Vec::new();
     };
     // The flange is the frame of the last body on the last link.
@@ -206,7 +211,10 @@ fn force_with_flange(along: &Along<'_>) -> Vec<TorqueColumn> {
     let mechanism = &along.effects.robot.mechanism;
     let q = along.signals.q;
     let axes: Vec<_> = (0..along.len())
-        .map(|i| flange_axes(mechanism, |joint| q[joint][i]))
+        .map(|i| {
+            let q: Vec<f64> = q.iter().map(|series| series[i]).collect();
+            flange_axes(mechanism, &q)
+        })
         .collect();
     let mut turned = fixed.clone();
     for (axis, column) in turned.iter_mut().enumerate() {

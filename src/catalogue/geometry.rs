@@ -33,7 +33,7 @@ pub(super) fn rigid(mechanism: &Mechanism, wanted: impl Fn(usize, usize) -> bool
         let number = 10 * parameter.link + place;
         wanted(parameter.link, place).then_some((number, parameter.columns.explicit.as_slice()))
     });
-    Linear::new(&graph, mechanism.joints.len(), columns)
+    Linear::new(&graph, mechanism.driven, columns)
 }
 
 /// The rigid bodies under a gravity of 1 m/s^2 along each axis of frame 0.
@@ -63,11 +63,12 @@ pub(super) fn unit_gravity_of_root(mechanism: &Mechanism) -> [Linear; 3] {
 }
 
 /// Axes of the flange, the last body of the last link, in the frame that the first joint of its
-/// chain stands in, at joint positions q.
-pub(super) fn flange_axes(mechanism: &Mechanism, q: impl Fn(usize) -> f64) -> Matrix3<f64> {
-    let Some(last) = mechanism.joints.len().checked_sub(1) else {
+/// chain stands in, at positions q of the joints with a drive.
+pub(super) fn flange_axes(mechanism: &Mechanism, q: &[f64]) -> Matrix3<f64> {
+    let Some(last) = mechanism.tool() else {
         return Matrix3::identity();
     };
+    let q = mechanism.positions(q);
     let body = mechanism.joints[last].bodies.last();
     let mut axes = body.map_or(Matrix3::identity(), |body| body.pose.rotation);
     let mut link = Some(last);
@@ -75,7 +76,7 @@ pub(super) fn flange_axes(mechanism: &Mechanism, q: impl Fn(usize) -> f64) -> Ma
         let joint = &mechanism.joints[number];
         let turned = match joint.kind {
             JointKind::Revolute => {
-                Rotation3::from_axis_angle(&Vector3::z_axis(), q(number)).into_inner()
+                Rotation3::from_axis_angle(&Vector3::z_axis(), q[number]).into_inner()
             }
             JointKind::Prismatic => Matrix3::identity(),
         };
@@ -171,6 +172,10 @@ impl Length {
     pub fn of(robot: &Robot, joint: usize) -> Option<Length> {
         let carried = &robot.mechanism.joints[joint];
         carried.parent?;
+        // One link of a loop alone cannot be longer: the loop would close elsewhere.
+        if !robot.description.loops.is_empty() {
+            return None;
+        }
         let longer = changed(&robot.description, &carried.name, STEP)?;
         let shorter = changed(&robot.description, &carried.name, -STEP)?;
         let variants = [longer, shorter].map(|description| {

@@ -97,7 +97,7 @@ pub struct Effects {
     smooth: Linear,
     /// Standard columns of all links.
     links: OnceLock<Linear>,
-    /// Standard columns of the last link.
+    /// Standard columns of the link that the tool is on.
     tool: OnceLock<Linear>,
     /// Standard columns under unit gravity along x, y, z of frame 0.
     gravity: OnceLock<[Linear; 3]>,
@@ -128,7 +128,7 @@ impl Effects {
             gravity_of_root: OnceLock::new(),
             lengths: robot
                 .mechanism
-                .joints
+                .driven()
                 .iter()
                 .map(|_| OnceLock::new())
                 .collect(),
@@ -137,7 +137,7 @@ impl Effects {
     }
 
     fn joints(&self) -> usize {
-        self.robot.mechanism.joints.len()
+        self.robot.mechanism.driven
     }
 
     fn kind(&self, joint: usize) -> JointKind {
@@ -155,8 +155,8 @@ impl Effects {
 
     fn tool(&self) -> &Linear {
         self.tool.get_or_init(|| {
-            let last = self.joints().saturating_sub(1);
-            geometry::rigid(&self.robot.mechanism, |link, _| link == last)
+            let tool = self.robot.mechanism.tool();
+            geometry::rigid(&self.robot.mechanism, |link, _| Some(link) == tool)
         })
     }
 
@@ -196,7 +196,7 @@ fn smooth(robot: &Robot) -> Linear {
     let columns = columns
         .iter()
         .map(|(column, entry)| (*column, entry.as_slice()));
-    Linear::new(&robot.graph, robot.mechanism.joints.len(), columns)
+    Linear::new(&robot.graph, robot.mechanism.driven, columns)
 }
 
 impl Catalogue for Effects {

@@ -208,7 +208,7 @@ impl Parts {
         }
         Parts {
             links: moved.collect(),
-            driven: (0..mechanism.joints.len()).collect(),
+            driven: (0..mechanism.driven).collect(),
             mechanism,
             others,
             gears: Vec::new(),

@@ -6,8 +6,10 @@ use std::path::PathBuf;
 use idim::codegen::Robot;
 use idim::codegen::base::lengths;
 use idim::codegen::derive::ParameterKind;
+use idim::codegen::describe::{Drive, Geometry};
+use idim::codegen::expr::Angle;
 use idim::codegen::expr::Operations;
-use idim::codegen::mechanism::{Joint, JointKind};
+use idim::codegen::mechanism::{Follow, Joint, JointKind};
 use serde::Serialize;
 
 use super::{Failure, failure, output, robot};
@@ -47,7 +49,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 #[derive(Debug, Serialize)]
 struct Report {
     robot: String,
+    /// Those with a drive: what a log has columns of.
     joints: Vec<JointReport>,
+    /// Those that follow them, numbered behind.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    followers: Vec<FollowerReport>,
     standard_parameters: usize,
     rank_gap: f64,
     lengths: Vec<LengthReport>,
@@ -75,6 +81,16 @@ struct JointReport {
 struct LengthReport {
     name: String,
     value: f64,
+}
+
+#[derive(Debug, Serialize)]
+struct FollowerReport {
+    #[serde(flatten)]
+    joint: JointReport,
+    /// `mimic` or `passive`.
+    drive: &'static str,
+    /// Its position, as text.
+    position: String,
 }
 
 #[derive(Debug, Serialize)]
@@ -119,9 +135,12 @@ impl Report {
             robot: robot.mechanism.name.clone(),
             joints: robot
                 .mechanism
-                .joints
+                .driven()
                 .iter()
                 .map(JointReport::new)
+                .collect(),
+            followers: (robot.mechanism.driven..robot.mechanism.joints.len())
+                .map(|joint| FollowerReport::new(robot, joint))
                 .collect(),
             standard_parameters: robot.base.standard,
             rank_gap: robot.base.gap,
@@ -169,6 +188,60 @@ impl JointReport {
     }
 }
 
+impl FollowerReport {
+    fn new(robot: &Robot, joint: usize) -> FollowerReport {
+        let known = &robot.mechanism.joints[joint];
+        FollowerReport {
+            joint: JointReport::new(known),
+            drive: drive(robot, &known.name),
+            position: position(robot, joint),
+        }
+    }
+}
+
+/// What moves a joint without a drive, in a word.
+fn drive(robot: &Robot, name: &str) -> &'static str {
+    let passive = match &robot.description.geometry {
+        Geometry::Urdf(_) => false,
+        Geometry::Mdh(rows) => {
+            let mut rows = rows.iter();
+            rows.any(|row| row.name == name && row.drive == Drive::Passive)
+        }
+    };
+    if passive { "passive" } else { "mimic" }
+}
+
+/// The position of a joint without a drive in those of the driven ones.
+fn position(robot: &Robot, joint: usize) -> String {
+    let sum = match robot.mechanism.follow(joint) {
+        Follow::Sum(sum) => sum,
+        Follow::Dyad { dyad, .. } => {
+            let drivers = robot.mechanism.dyads[dyad].drivers.iter();
+            let names: Vec<String> = drivers.map(|driver| format!("q{}", driver + 1)).collect();
+            return format!("a function of {}", names.join(", "));
+        }
+    };
+    let mut text = String::new();
+    let constant = (sum.offset != 0.0).then(|| (sum.offset, String::new()));
+    let terms = sum.terms.iter();
+    let terms = terms.map(|&(driver, factor)| (factor, format!("q{}", driver + 1)));
+    for (factor, name) in terms.chain(constant) {
+        let size = match name.is_empty() {
+            true => angle(Angle::radians(factor.abs())),
+            false if factor.abs() == 1.0 => String::new(),
+            false => format!("{} ", factor.abs()),
+        };
+        text.push_str(match (text.is_empty(), factor < 0.0) {
+            (true, false) => "",
+            (true, true) => "-",
+            (false, false) => " + ",
+            (false, true) => " - ",
+        });
+        text.push_str(&format!("{size}{name}"));
+    }
+    text
+}
+
 impl ParameterReport {
     fn new(parameter: &idim::codegen::base::BaseParameter) -> ParameterReport {
         ParameterReport {
@@ -206,17 +279,23 @@ fn kind(kind: JointKind) -> &'static str {
 /// The description for people.
 fn text(robot: &Robot) -> String {
     let mut out = String::new();
-    let n = robot.mechanism.joints.len();
+    let n = robot.mechanism.driven;
+    let others = match robot.mechanism.joints.len() - n {
+        0 => String::new(),
+        1 => " with a drive and 1 that follows".to_owned(),
+        more => format!(" with a drive and {more} that follow"),
+    };
     let np = robot.base.parameters.len();
     let _ = writeln!(
         out,
-        "{}: {n} joint{}, {np} base parameters of {} standard ones (rank gap {:.0e})\n",
+        "{}: {n} joint{}{others}, {np} base parameters of {} standard ones (rank gap {:.0e})\n",
         robot.mechanism.name,
         if n == 1 { "" } else { "s" },
         robot.base.standard,
         robot.base.gap
     );
     joints(&mut out, robot);
+    followers(&mut out, robot);
     snaps(&mut out, robot);
     parameters(&mut out, robot);
     operations(&mut out, robot);
@@ -236,16 +315,21 @@ fn joints(out: &mut String, robot: &Robot) {
         "  j  {:<width$}  {:<9}  ant  {:>8} {:>8} {:>8}   origin in the antecedent's frame, m",
         "joint", "kind", "gamma", "alpha", "theta"
     );
+    // What follows has a position, but no column in a log.
+    let variable = |index: usize| match index < robot.mechanism.driven {
+        true => format!("q{}", index + 1),
+        false => format!("p{}", index + 1),
+    };
     for (index, joint) in robot.mechanism.joints.iter().enumerate() {
         let [gamma, alpha, theta] = [joint.gamma, joint.alpha, joint.theta].map(angle);
-        let variable = match joint.kind {
-            JointKind::Revolute => format!("q{}", index + 1),
+        let own = match joint.kind {
+            JointKind::Revolute => variable(index),
             JointKind::Prismatic => String::new(),
         };
-        let theta = match (theta.as_str(), variable.as_str()) {
+        let theta = match (theta.as_str(), own.as_str()) {
             (theta, "") => theta.to_owned(),
-            ("0", variable) => variable.to_owned(),
-            (theta, variable) => format!("{variable} + {theta}").replace("+ -", "- "),
+            ("0", own) => own.to_owned(),
+            (theta, own) => format!("{own} + {theta}").replace("+ -", "- "),
         };
         let [x, y, z] = joint.position;
         let _ = write!(
@@ -257,16 +341,31 @@ fn joints(out: &mut String, robot: &Robot) {
             joint.parent.map_or(0, |parent| parent + 1),
         );
         if joint.kind == JointKind::Prismatic {
-            let _ = write!(out, " + q{} along z", index + 1);
+            let _ = write!(out, " + {} along z", variable(index));
         }
         out.push('\n');
     }
 }
 
-fn angle(angle: idim::codegen::expr::Angle) -> String {
+fn angle(angle: Angle) -> String {
     match angle.right() {
         Some(_) => angle.text(),
         None => format!("{:.6}", angle.value()),
+    }
+}
+
+/// What every joint without a drive does.
+fn followers(out: &mut String, robot: &Robot) {
+    for joint in robot.mechanism.driven..robot.mechanism.joints.len() {
+        let name = &robot.mechanism.joints[joint].name;
+        let (number, position) = (joint + 1, position(robot, joint));
+        let _ = match drive(robot, name) {
+            "passive" => writeln!(
+                out,
+                "  {name} has no drive, a closed loop moves it: p{number} = {position}"
+            ),
+            _ => writeln!(out, "  {name} follows: p{number} = {position}"),
+        };
     }
 }
 

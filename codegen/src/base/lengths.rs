@@ -22,6 +22,10 @@ pub struct Length {
 /// The lengths of a mechanism that are not zero, from the base outwards.
 pub fn of(mechanism: &Mechanism, description: &Description) -> Vec<Length> {
     let mut lengths: Vec<Length> = Vec::new();
+    // With other lengths their loops would close elsewhere, or not at all.
+    if !mechanism.dyads.is_empty() {
+        return lengths;
+    }
     for (index, joint) in mechanism.joints.iter().enumerate() {
         for (symbol, value, direction) in displacements(joint) {
             let (name, stated) = stated(description, &joint.name, symbol, value)

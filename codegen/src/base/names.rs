@@ -12,13 +12,21 @@ const M: usize = 9;
 /// from the last link to the first what is usually identified, then what is usually regrouped
 /// (YY, MZ, M of a revolute link, the tensor of a prismatic one), and rotor inertias last. The
 /// first moments of a prismatic link come between: along the axis of the link that carries it
-/// they are that link's.
+/// they are that link's. Among equals, links behind joints that follow others come last.
 pub fn priority(mechanism: &Mechanism, standard: &[Standard]) -> Vec<usize> {
     let mut columns: Vec<usize> = (0..standard.len()).collect();
     let links = mechanism.joints.len();
+    let place = |link: usize| {
+        mechanism
+            .order
+            .iter()
+            .position(|&at| at == link)
+            .unwrap_or(link)
+    };
     columns.sort_by_key(|&column| {
         let parameter = &standard[column];
-        let from_tip = links - parameter.link;
+        let from_tip = links - place(parameter.link);
+        let follows = parameter.link >= mechanism.driven;
         let class = match parameter.kind {
             ParameterKind::Friction | ParameterKind::Effect => 0,
             ParameterKind::Inertial(index) => match mechanism.joints[parameter.link].kind {
@@ -30,7 +38,7 @@ pub fn priority(mechanism: &Mechanism, standard: &[Standard]) -> Vec<usize> {
             },
             ParameterKind::Drive => 4,
         };
-        (class, from_tip, column)
+        (class, follows, from_tip, column)
     });
     columns
 }

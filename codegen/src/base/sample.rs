@@ -7,15 +7,22 @@ use rand_pcg::rand_core::Rng;
 use crate::derive::Standard;
 use crate::expr::tape::{Batch, Tape};
 use crate::expr::{Expr, Graph};
+use crate::mechanism::loops::{self, Range};
 use crate::mechanism::{JointKind, Mechanism};
 
 /// Fixed, so that names and relations are the same on every run.
 const SEED: u128 = 0x6964_696d;
 
+/// Postures that are tried for a sample of a robot with closed loops.
+const POSTURES: usize = 2000;
+
+/// Sine of the angle between the two links of a loop that is far enough from a line.
+const BEND: f64 = 0.2;
+
 /// Columns of D, one per standard parameter, rows joint by joint on enough states that random
 /// coincidence cannot hide a rank.
 pub fn explicit(graph: &Graph, mechanism: &Mechanism, standard: &[Standard]) -> DMatrix<f64> {
-    let n = mechanism.joints.len();
+    let n = mechanism.driven;
     let len = 2 * standard.len() / n + 20;
     let states = States::random(mechanism, len);
     let entries: Vec<(usize, usize, Expr)> = standard
@@ -39,6 +46,38 @@ pub fn explicit(graph: &Graph, mechanism: &Mechanism, standard: &[Standard]) -> 
         }
     }
     w
+}
+
+/// Positions at which the closed loops close well, within the limits that are stated.
+fn postures(mechanism: &Mechanism, len: usize, unit: &mut impl FnMut() -> f64) -> Vec<f64> {
+    let ranges: Vec<Range> = mechanism
+        .driven()
+        .iter()
+        .map(|joint| loops::range_of(joint.kind, joint.limits.lower, joint.limits.upper))
+        .collect();
+    let mut q = vec![0.0; ranges.len() * len];
+    let (mut sample, mut best) = (0, 0.0);
+    let mut kept: Vec<f64> = vec![];
+    for attempt in 1..=POSTURES * len {
+        let drawn: Vec<f64> = ranges.iter().map(|range| range.at(unit())).collect();
+        let bend = mechanism.bend(&drawn);
+        if bend > best {
+            (best, kept) = (bend, drawn.clone());
+        }
+        let enough = bend > BEND;
+        // What never closes well is taken as well as it closes.
+        if enough || attempt >= POSTURES * (sample + 1) {
+            let taken = if enough { &drawn } else { &kept };
+            for (joint, &value) in taken.iter().enumerate() {
+                q[joint * len + sample] = value;
+            }
+            (sample, best) = (sample + 1, 0.0);
+        }
+        if sample == len {
+            break;
+        }
+    }
+    q
 }
 
 /// Random states, structure of arrays.
@@ -65,7 +104,7 @@ impl States {
             qdd: vec![],
             slip: vec![],
         };
-        for joint in &mechanism.joints {
+        for joint in mechanism.driven() {
             let range = match joint.kind {
                 JointKind::Revolute => std::f64::consts::PI,
                 JointKind::Prismatic => 1.0,
@@ -76,8 +115,11 @@ impl States {
                 states.qdd.push(5.0 * unit());
             }
         }
+        if !mechanism.dyads.is_empty() {
+            states.q = postures(mechanism, len, &mut unit);
+        }
         // Drawn last, so that the other numbers are the same with and without them.
-        states.slip = (0..mechanism.joints.len() * len).map(|_| unit()).collect();
+        states.slip = (0..mechanism.driven * len).map(|_| unit()).collect();
         states
     }
 

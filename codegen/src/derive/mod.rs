@@ -6,6 +6,8 @@
 //! product of that with the screw of a joint above. This module knows no Rust.
 
 pub mod body;
+pub mod closed;
+pub mod coordinate;
 pub mod effects;
 pub mod energy;
 pub mod explicit;
@@ -68,7 +70,8 @@ pub struct Columns {
 pub struct StandardModel {
     /// Link by link, then the effects.
     pub parameters: Vec<Standard>,
-    /// Number of nodes after each link: what belongs to link k lies between ends k-1 and k.
+    /// Number of nodes after each link in the order from the base outwards: what belongs to the
+    /// k-th of them lies between ends k-1 and k.
     pub ends: Vec<usize>,
     /// The motions of the links.
     pub motions: Motions,
@@ -77,16 +80,17 @@ pub struct StandardModel {
 /// All standard parameters of a mechanism. Link by link: its motion, then its columns, so that
 /// the order of the nodes is the order in which a person would write the model down.
 pub fn standard(graph: &mut Graph, mechanism: &Mechanism) -> StandardModel {
-    let mut motions = Motions::default();
+    let mut motions = Motions::new(graph, mechanism);
     let mut model = StandardModel::default();
-    for link in 0..mechanism.joints.len() {
-        motions.push(graph, mechanism);
+    for &link in &mechanism.order {
+        motions.push(graph, mechanism, link);
         names::motion(graph, link, &motions.links[link]);
         names::movers(graph, link, &motions.movers[link]);
         inertial(graph, &motions, link, &mut model.parameters);
         model.ends.push(graph.nodes().len());
     }
     model.motions = motions;
+    model.parameters.sort_by_key(|parameter| parameter.link);
     let kinds: Vec<JointKind> = mechanism.joints.iter().map(|joint| joint.kind).collect();
     for effect in &mechanism.effects {
         model

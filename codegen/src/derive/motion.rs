@@ -1,9 +1,11 @@
 //! The motion of every link in its own frame, and the screws of the joints that move it.
 
 use crate::expr::rotate::Rotator;
-use crate::expr::{Angle, AngleSum, Expr, Graph, Input};
+use crate::expr::{Angle, Expr, Graph};
 use crate::mechanism::{Joint, JointKind, Mechanism};
 
+use super::closed::{self, Closed};
+use super::coordinate::Coordinate;
 use super::vector::{AXES, Screw, Vec3, add, constant, cross, into_frame, zero};
 
 /// The motion of a link, components in its frame, about the origin of its frame.
@@ -25,10 +27,11 @@ pub struct Motion {
     pub potential: Expr,
 }
 
-/// A joint that moves a link: its screw and the rate of that screw, in the frame of the link.
+/// A driven joint that moves a link, itself and through the joints that follow it: its screw and
+/// the rate of that screw, in the frame of the link.
 #[derive(Clone, Copy, Debug)]
 pub struct Mover {
-    /// The joint.
+    /// The driven joint.
     pub joint: usize,
     /// Twist of the link per unit velocity of the joint.
     pub screw: Screw,
@@ -42,22 +45,35 @@ pub struct Mover {
 pub struct Motions {
     /// Per link.
     pub links: Vec<Motion>,
-    /// Per link, the joints from the base to the link's own.
+    /// Per link, the driven joints that move it.
     pub movers: Vec<Vec<Mover>>,
     /// What was turned by which angle so far.
     pub rotator: Rotator,
+    /// The joints that closed loops move.
+    pub solved: Vec<[Closed; 3]>,
 }
 
 impl Motions {
-    /// Computes the motion of the next link from that of its antecedent.
-    pub fn push(&mut self, graph: &mut Graph, mechanism: &Mechanism) {
-        let index = self.links.len();
+    /// Room for every link; each stands still until it is pushed.
+    pub fn new(graph: &mut Graph, mechanism: &Mechanism) -> Motions {
+        let count = mechanism.joints.len();
+        Motions {
+            links: vec![still(graph); count],
+            movers: vec![vec![]; count],
+            rotator: Rotator::default(),
+            solved: closed::solved(graph, mechanism),
+        }
+    }
+
+    /// Computes the motion of a link from that of its antecedent, which comes first.
+    pub fn push(&mut self, graph: &mut Graph, mechanism: &Mechanism, index: usize) {
         let joint = &mechanism.joints[index];
         let mut step = Step {
             graph,
             rotator: &mut self.rotator,
             joint,
             index,
+            coordinate: Coordinate::of(mechanism, &self.solved, index),
         };
         let parent = match joint.parent {
             Some(parent) => self.links[parent],
@@ -67,8 +83,8 @@ impl Motions {
         let motion = step.motion(&parent);
         let above = joint.parent.map_or(&[][..], |parent| &self.movers[parent]);
         let movers = step.movers(above, &motion);
-        self.links.push(motion);
-        self.movers.push(movers);
+        self.links[index] = motion;
+        self.movers[index] = movers;
     }
 }
 
@@ -78,6 +94,7 @@ struct Step<'a> {
     rotator: &'a mut Rotator,
     joint: &'a Joint,
     index: usize,
+    coordinate: Coordinate,
 }
 
 impl Step<'_> {
@@ -102,17 +119,10 @@ impl Step<'_> {
 
     fn base(&mut self) -> Motion {
         let g = constant(self.graph, self.joint.gravity.unwrap_or_default());
-        let none = zero(self.graph);
-        let a = g.map(|x| -x);
-        let potential = self.graph.zero();
         Motion {
-            w: none,
-            wd: none,
-            a,
-            u: [none; 3],
-            v: none,
+            a: g.map(|x| -x),
             g,
-            potential,
+            ..still(self.graph)
         }
     }
 
@@ -145,8 +155,8 @@ impl Step<'_> {
     }
 
     fn revolute(&mut self, mut m: Motion) -> Motion {
-        let qd = self.graph.input(Input::Qd(self.index));
-        let qdd = self.graph.input(Input::Qdd(self.index));
+        let qd = self.coordinate.velocity(self.graph);
+        let qdd = self.coordinate.acceleration(self.graph);
         let wyqd = self.graph.mul(m.w[1], qd);
         let wxqd = self.graph.mul(m.w[0], qd);
         m.wd = add(self.graph, m.wd, [wyqd, -wxqd, qdd]);
@@ -156,9 +166,9 @@ impl Step<'_> {
     }
 
     fn prismatic(&mut self, mut m: Motion) -> Motion {
-        let q = self.graph.input(Input::Q(self.index));
-        let qd = self.graph.input(Input::Qd(self.index));
-        let qdd = self.graph.input(Input::Qdd(self.index));
+        let q = self.coordinate.position(self.graph);
+        let qd = self.coordinate.velocity(self.graph);
+        let qdd = self.coordinate.acceleration(self.graph);
         m.u = u(self.graph, m.w, m.wd);
         // Acceleration of the sliding origin: U (0, 0, q) + 2 w x (0, 0, qd) + (0, 0, qdd).
         let zero = self.graph.zero();
@@ -185,17 +195,35 @@ impl Step<'_> {
                 rate: self.carry(&mover.rate),
             })
             .collect();
-        movers.push(self.own(motion));
+        let (screw, rate) = self.own(motion);
+        for share in self.coordinate.shares(self.graph) {
+            // The rate of G S is G dS/dt + dG/dt S.
+            let swept = screw.times(self.graph, share.rate);
+            let screw = screw.times(self.graph, share.ratio);
+            let rate = rate.times(self.graph, share.ratio);
+            let rate = rate.plus(self.graph, &swept);
+            match movers.iter_mut().find(|mover| mover.joint == share.joint) {
+                Some(mover) => {
+                    mover.screw = mover.screw.plus(self.graph, &screw);
+                    mover.rate = mover.rate.plus(self.graph, &rate);
+                }
+                None => movers.push(Mover {
+                    joint: share.joint,
+                    screw,
+                    rate,
+                }),
+            }
+        }
         movers
     }
 
     /// The joint's own screw and its rate ((wy, -wx, 0), (vy, -vx, 0)).
-    fn own(&mut self, m: &Motion) -> Mover {
+    fn own(&mut self, m: &Motion) -> (Screw, Screw) {
         let (none, one) = (self.graph.zero(), self.graph.one());
         let z = [none, none, one];
         let still = zero(self.graph);
         let turning = [m.w[1], -m.w[0], none];
-        let (screw, rate) = match self.joint.kind {
+        match self.joint.kind {
             JointKind::Revolute => (
                 Screw {
                     angular: z,
@@ -216,11 +244,6 @@ impl Step<'_> {
                     linear: turning,
                 },
             ),
-        };
-        Mover {
-            joint: self.index,
-            screw,
-            rate,
         }
     }
 
@@ -233,7 +256,7 @@ impl Step<'_> {
         let mut linear = self.turn(moved);
         if self.joint.kind == JointKind::Prismatic {
             let zero = self.graph.zero();
-            let q = self.graph.input(Input::Q(self.index));
+            let q = self.coordinate.position(self.graph);
             let slid = cross(self.graph, angular, [zero, zero, q]);
             linear = add(self.graph, linear, slid);
         }
@@ -242,11 +265,22 @@ impl Step<'_> {
 
     fn turn(&mut self, vector: Vec3) -> Vec3 {
         let (gamma, alpha): (Angle, Angle) = (self.joint.gamma, self.joint.alpha);
-        let theta = match self.joint.kind {
-            JointKind::Revolute => AngleSum::joint(self.index, self.joint.theta),
-            JointKind::Prismatic => AngleSum::constant(self.joint.theta),
-        };
+        let theta = self.coordinate.angle(self.joint);
         into_frame(self.graph, self.rotator, vector, (gamma, alpha, &theta))
+    }
+}
+
+/// A link that does not move, without gravity.
+fn still(graph: &Graph) -> Motion {
+    let none = zero(graph);
+    Motion {
+        w: none,
+        wd: none,
+        a: none,
+        u: [none; 3],
+        v: none,
+        g: none,
+        potential: graph.zero(),
     }
 }
 

@@ -1,6 +1,7 @@
 //! Vectors of expressions.
 
-use crate::expr::{Angle, AngleSum, Expr, Graph, rotate::Rotator};
+use crate::expr::rotate::{Rotator, Turn};
+use crate::expr::{Angle, AngleSum, Expr, Graph};
 
 /// Names of the components of a vector.
 pub const AXES: [&str; 3] = ["x", "y", "z"];
@@ -15,6 +16,24 @@ pub struct Screw {
     pub angular: Vec3,
     /// Linear velocity of the origin, or force.
     pub linear: Vec3,
+}
+
+impl Screw {
+    /// `factor` times the screw.
+    pub fn times(&self, graph: &mut Graph, factor: Expr) -> Screw {
+        Screw {
+            angular: self.angular.map(|x| graph.mul(factor, x)),
+            linear: self.linear.map(|x| graph.mul(factor, x)),
+        }
+    }
+
+    /// The sum of two screws.
+    pub fn plus(&self, graph: &mut Graph, other: &Screw) -> Screw {
+        Screw {
+            angular: add(graph, self.angular, other.angular),
+            linear: add(graph, self.linear, other.linear),
+        }
+    }
 }
 
 /// The zero vector.
@@ -61,10 +80,10 @@ pub fn into_frame(
     graph: &mut Graph,
     rotator: &mut Rotator,
     vector: Vec3,
-    (gamma, alpha, theta): (Angle, Angle, &AngleSum),
+    (gamma, alpha, theta): (Angle, Angle, &Turn),
 ) -> Vec3 {
     let [x, y, z] = vector;
-    let (x, y) = about_z(graph, rotator, (x, y), &AngleSum::constant(gamma));
+    let (x, y) = rotator.by(graph, (x, y), &constant_turn(gamma));
     let (s, c) = alpha.sin_cos();
     let (y, z) = if alpha.is_zero() {
         (y, z)
@@ -78,7 +97,7 @@ pub fn into_frame(
         );
         (graph.add(cy, sz), graph.sub(cz, sy))
     };
-    let (x, y) = about_z(graph, rotator, (x, y), theta);
+    let (x, y) = rotator.by(graph, (x, y), theta);
     [x, y, z]
 }
 
@@ -87,9 +106,9 @@ pub fn out_of_frame(
     graph: &mut Graph,
     rotator: &mut Rotator,
     vector: Vec3,
-    (gamma, alpha, theta): (Angle, Angle, &AngleSum),
+    (gamma, alpha, theta): (Angle, Angle, &Turn),
 ) -> Vec3 {
-    let none = AngleSum::constant(Angle::ZERO);
+    let none = constant_turn(Angle::ZERO);
     let turned = into_frame(
         graph,
         rotator,
@@ -100,14 +119,6 @@ pub fn out_of_frame(
     into_frame(graph, rotator, tilted, (-gamma, Angle::ZERO, &none))
 }
 
-fn about_z(
-    graph: &mut Graph,
-    rotator: &mut Rotator,
-    pair: (Expr, Expr),
-    angle: &AngleSum,
-) -> (Expr, Expr) {
-    if angle.terms.is_empty() && angle.offset.is_zero() {
-        return pair;
-    }
-    rotator.into_frame(graph, pair, angle)
+fn constant_turn(angle: Angle) -> Turn {
+    Turn::Angle(AngleSum::constant(angle))
 }

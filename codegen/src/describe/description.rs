@@ -19,6 +19,8 @@ pub struct Description {
     pub lengths: Vec<(String, f64)>,
     /// Where the joints are.
     pub geometry: Geometry,
+    /// Where the tree of the joints closes on itself; none in a URDF.
+    pub loops: Vec<LoopSpec>,
     /// Every effect on every joint, joint by joint in the order of the joints, then the
     /// `[[effect]]` entries in the order of the text.
     pub effects: Vec<EffectSpec>,
@@ -69,6 +71,31 @@ pub enum Motion {
     Fixed,
 }
 
+/// What moves a joint.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Drive {
+    /// A drive of its own.
+    #[default]
+    Own,
+    /// Another joint.
+    Mimic(Mimic),
+    /// The links of a closed loop.
+    Passive,
+}
+
+/// A joint that follows another: q = multiplier * q of that joint + offset.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mimic {
+    /// Name of the joint that is followed: it moves, and may itself follow another.
+    pub joint: String,
+    /// Factor, never 0; rad/rad, m/rad, rad/m or m/m.
+    pub multiplier: f64,
+    /// Constant, rad or m.
+    pub offset: f64,
+    /// Where it is stated.
+    pub span: Span,
+}
+
 /// A number together with the text it was written as (`L`, `pi/2`, `0.5`).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Quantity {
@@ -100,11 +127,30 @@ pub struct MdhRow {
     pub theta: Quantity,
     /// Translation along z, m; added to q of a prismatic joint.
     pub r: Quantity,
+    /// What moves it.
+    pub drive: Drive,
     /// XX, XY, XZ, YY, YZ, ZZ, MX, MY, MZ, M about the origin of this frame, if described.
     pub inertial: Option<[f64; 10]>,
     /// Limits, if stated.
     pub limits: Limits,
     /// Where the row stands.
+    pub span: Span,
+}
+
+/// A closed loop: a frame that two branches of the tree of rows have in common once it is
+/// assembled.
+#[derive(Clone, Debug)]
+pub struct LoopSpec {
+    /// What messages call it.
+    pub name: String,
+    /// The joint that is cut to make a tree, as one branch reaches it. Its `ant` counts rows, and
+    /// behind them the `cut` frames of all loops, then their `meets` frames.
+    pub cut: MdhRow,
+    /// The same frame as the other branch has it: a fixed row.
+    pub meets: MdhRow,
+    /// Whether the loop is assembled the other way round.
+    pub flipped: bool,
+    /// Where it is stated.
     pub span: Span,
 }
 
@@ -176,6 +222,8 @@ pub struct UrdfJoint {
     pub origin: Pose,
     /// Unit axis in the joint frame.
     pub axis: [f64; 3],
+    /// What moves it.
+    pub drive: Drive,
     /// Limits, if stated.
     pub limits: Limits,
     /// Where the element stands.

@@ -80,6 +80,11 @@ impl Finding {
         self
     }
 
+    /// The error at a place of a file.
+    pub(crate) fn at(self, file: &str, span: Span) -> Diagnostic {
+        self.diagnostic(Severity::Error, file, span)
+    }
+
     /// The error on a file as a whole, before it has places.
     pub(crate) fn on_file(self, file: &str) -> Diagnostic {
         self.diagnostic(Severity::Error, file, Span::default())

@@ -25,7 +25,8 @@ pub use description::*;
 pub use diagnostic::{Diagnostic, Severity, Span};
 pub use source::Kind;
 
-use findings::finding;
+use crate::mechanism;
+use findings::{Finding, finding};
 use std::path::Path;
 
 /// Reads a robot from a file: `.urdf`, `.par`, or `.toml` (which may name a URDF beside it).
@@ -84,9 +85,31 @@ pub fn read_text(
         let message = format!("larger than {} MiB", source::MAX_BYTES >> 20);
         return Err(vec![finding(code::FILE_TOO_LARGE, message).on_file(file)]);
     }
-    match kind {
+    let description = match kind {
         Kind::Urdf => toml::read_bare(text, file),
         Kind::Toml => toml::read(text, file, load),
         Kind::Par => par::read(text, file),
+    }?;
+    match unsolved(&description) {
+        Some((span, found)) => Err(vec![found.at(file, span)]),
+        None => Ok(description),
     }
+}
+
+/// A closed loop that is not modelled, with its place.
+fn unsolved(description: &Description) -> Option<(Span, Finding)> {
+    let why = mechanism::unsolved(description)?;
+    let named = |one: &&LoopSpec| Some(one.name.as_str()) == why.name();
+    let stated = description.loops.iter().find(named).map(|one| one.span);
+    let rows = match &description.geometry {
+        Geometry::Mdh(rows) => rows.as_slice(),
+        Geometry::Urdf(_) => &[],
+    };
+    let passive = rows.iter().find(|row| row.drive == Drive::Passive);
+    let span = stated.or(passive.map(|row| row.span));
+    let help = "leave its cut out and give every joint a drive for the model of the open tree";
+    Some((
+        span.unwrap_or_default(),
+        finding(code::CLOSED_LOOP, why.to_string()).help(help),
+    ))
 }

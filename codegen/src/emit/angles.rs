@@ -52,8 +52,11 @@ impl Trig {
         number: impl Fn(f64) -> String,
     ) -> String {
         let mut text = String::new();
-        for (joint, negative) in self.angle.steps() {
-            text.push_str(operator(text.is_empty(), negative));
+        for &(joint, factor) in &self.angle.terms {
+            text.push_str(operator(text.is_empty(), factor < 0.0));
+            if factor.abs() != 1.0 {
+                text.push_str(&format!("{} * ", number(factor.abs())));
+            }
             text.push_str(&position(joint));
         }
         if !self.angle.offset.is_zero() {
@@ -64,11 +67,19 @@ impl Trig {
         text
     }
 
+    /// Whether it is the position of one joint.
+    pub fn is_plain(&self) -> bool {
+        matches!(self.angle.terms[..], [(_, 1.0)]) && self.angle.offset.is_zero()
+    }
+
     /// The angle as a person writes it, such as `q2 + q3 + pi/2`.
     pub fn text(&self) -> String {
         let mut text = String::new();
-        for (joint, negative) in self.angle.steps() {
-            text.push_str(operator(text.is_empty(), negative));
+        for &(joint, factor) in &self.angle.terms {
+            text.push_str(operator(text.is_empty(), factor < 0.0));
+            if factor.abs() != 1.0 {
+                text.push_str(&format!("{} ", factor.abs()));
+            }
             text.push_str(&format!("q{}", joint + 1));
         }
         if !self.angle.offset.is_zero() {

@@ -63,6 +63,9 @@ impl Language for C {
             Function::Power(p) => format!("pow(fabs({x}), {})", number(f64::from_bits(p))),
             Function::Sine => format!("sin({x})"),
             Function::Cosine => format!("cos({x})"),
+            Function::Reciprocal => format!("(1.0 / ({x}))"),
+            Function::Root => format!("sqrt({x})"),
+            Function::RootOfOpposite => format!("sqrt(-({x}))"),
         }
     }
 }
@@ -104,7 +107,7 @@ fn header(robot: &Robot) -> String {
         &DECLARATIONS
             .replace("UPPER", &upper)
             .replace("NAME", name)
-            .replace("HOW_MANY_JOINTS", &robot.mechanism.joints.len().to_string())
+            .replace("HOW_MANY_JOINTS", &robot.mechanism.driven.to_string())
             .replace("HOW_MANY_COLUMNS", &robot.base.parameters.len().to_string())
             .replace("THE_SHA", &robot.description.hash)
             .replace("INDICES", &columns.collect::<String>()),
@@ -261,7 +264,7 @@ fn tables(robot: &Robot) -> String {
             )
         })
         .collect();
-    let joints: String = (robot.mechanism.joints.iter())
+    let joints: String = (robot.mechanism.driven().iter())
         .map(|joint| format!("    {},\n", quoted(&joint.name)))
         .collect();
     let values: String = (Knowledge::of(robot).nominal.iter())

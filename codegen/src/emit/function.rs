@@ -232,10 +232,11 @@ struct Section {
     columns: Vec<usize>,
 }
 
-/// One section per link, then one for the effects, then one for what is beside the models. A
-/// column belongs to the first section at whose end all its entries are known.
+/// One section per link from the base outwards, then one for the effects, then one for what is
+/// beside the models. A column belongs to the first section at whose end all its entries are known.
 fn sections(robot: &Robot, course: &str) -> Vec<Section> {
-    let links = robot.mechanism.joints.iter().enumerate();
+    let (joints, order) = (&robot.mechanism.joints, &robot.mechanism.order);
+    let links = order.iter().map(|&link| (link, &joints[link]));
     let mut sections: Vec<Section> = links
         .map(|(link, joint)| format!("Link {}, carried by {}.", link + 1, joint.name))
         .chain(["Drives, friction and other effects.".to_owned()])
@@ -254,7 +255,8 @@ fn sections(robot: &Robot, course: &str) -> Vec<Section> {
         let place = match parameter.kind {
             ParameterKind::Inertial(_) => {
                 let known = values(parameter).map(|value| places[value.node()]).max();
-                known.unwrap_or(0).max(parameter.link)
+                let own = order.iter().position(|&link| link == parameter.link);
+                known.max(own).unwrap_or(0)
             }
             _ => robot.ends.len(),
         };

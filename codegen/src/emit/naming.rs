@@ -62,7 +62,7 @@ fn unique(taken: &mut HashSet<String>, wish: &str) -> String {
 }
 
 /// The name of every angle of a graph, to go behind `s` or `c`: `23` for q2 + q3, `2m3` for
-/// q2 - q3, `22` for 2 q2, `6o` with a constant offset.
+/// q2 - q3, `6o` with a constant offset, `1x0_5` for half of q1.
 pub fn angles(graph: &Graph) -> Vec<String> {
     let mut taken = HashSet::new();
     (0..graph.angle_count())
@@ -73,13 +73,22 @@ pub fn angles(graph: &Graph) -> Vec<String> {
 fn angle(angle: &AngleSum) -> String {
     let wide = angle.terms.iter().any(|&(joint, _)| joint >= 9);
     let mut name = String::new();
-    for (place, (joint, negative)) in angle.steps().enumerate() {
-        if negative {
+    let mut after_factor = false;
+    for (place, &(joint, factor)) in angle.terms.iter().enumerate() {
+        if factor < 0.0 {
             name.push('m');
-        } else if wide && place > 0 {
+        } else if place > 0 && (wide || after_factor) {
             name.push('_');
         }
         name.push_str(&(joint + 1).to_string());
+        after_factor = factor.abs() != 1.0;
+        if after_factor {
+            let digits = factor
+                .abs()
+                .to_string()
+                .replace(|c: char| !c.is_ascii_digit(), "_");
+            name.push_str(&format!("x{digits}"));
+        }
     }
     if !angle.offset.is_zero() {
         name.push('o');

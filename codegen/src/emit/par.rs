@@ -3,7 +3,7 @@
 use super::File;
 use super::text::number;
 use crate::catalogue::EffectKind;
-use crate::describe::{EffectSpec, Geometry, MdhRow, Motion, Quantity};
+use crate::describe::{Drive, EffectSpec, Geometry, MdhRow, Motion, Quantity};
 use crate::robot::Robot;
 
 /// Why a robot cannot be written as a `.par`.
@@ -35,12 +35,18 @@ pub fn par(robot: &Robot) -> Result<File, ParError> {
     );
     text.push_str(&left_out(robot));
     text.push_str(&format!("(* Robotname = '{name}' *)\n"));
-    let n = rows.len();
+    let loops = &robot.description.loops;
+    let (n, cuts) = (rows.len(), loops.len());
     let tree = rows.iter().enumerate().any(|(index, row)| row.ant != index);
-    let kind = usize::from(tree);
-    text.push_str(&format!("NL = {n}\nNJ = {n}\nNF = {n}\nType = {kind}\n"));
+    let kind = if cuts > 0 { 2 } else { usize::from(tree) };
+    let (joints, frames) = (n + cuts, n + 2 * cuts);
+    text.push_str(&format!(
+        "NL = {n}\nNJ = {joints}\nNF = {frames}\nType = {kind}\n"
+    ));
     text.push_str("is_floating = False\nis_mobile = False\n");
-    text.push_str(&geometry(rows));
+    let sides = loops.iter().map(|one| &one.cut);
+    let sides = sides.chain(loops.iter().map(|one| &one.meets));
+    text.push_str(&geometry(&rows.iter().chain(sides).collect::<Vec<_>>()));
     text.push_str(&dynamics(robot, rows));
     let [x, y, z] = robot.description.gravity.map(number);
     text.push_str(&format!(
@@ -69,17 +75,33 @@ fn sayable(effect: &EffectSpec) -> bool {
 
 fn left_out(robot: &Robot) -> String {
     let effects = robot.description.effects.iter();
-    effects
-        .filter(|effect| !sayable(effect))
-        .map(|effect| {
-            let joints = effect.joints.join(", ").replace("*)", "* )");
-            let joints: String = joints.chars().filter(|c| !c.is_control()).collect();
-            format!(
-                "(* not in this format: {} of {joints} *)\n",
-                effect.kind.name()
-            )
-        })
-        .collect()
+    let effects = effects.filter(|effect| !sayable(effect)).map(|effect| {
+        let joints = effect.joints.join(", ").replace("*)", "* )");
+        let joints: String = joints.chars().filter(|c| !c.is_control()).collect();
+        format!(
+            "(* not in this format: {} of {joints} *)\n",
+            effect.kind.name()
+        )
+    });
+    let joints = robot.mechanism.joints.iter().enumerate();
+    let mimics = joints.filter(|(_, joint)| follows(robot, &joint.name));
+    let mimics = mimics.map(|(number, _)| {
+        let number = number + 1;
+        format!("(* not in this format: joint {number} of the model follows another *)\n")
+    });
+    let flipped = robot.description.loops.iter().filter(|one| one.flipped);
+    let flipped = flipped
+        .map(|_| "(* not in this format: a loop is assembled the other way round *)\n".to_owned());
+    effects.chain(mimics).chain(flipped).collect()
+}
+
+/// Whether a joint mimics another.
+fn follows(robot: &Robot, name: &str) -> bool {
+    let Geometry::Mdh(rows) = &robot.description.geometry else {
+        return false;
+    };
+    let mut rows = rows.iter();
+    rows.any(|row| row.name == name && matches!(row.drive, Drive::Mimic(_)))
 }
 
 fn list(key: &str, values: impl Iterator<Item = String>) -> String {
@@ -87,7 +109,7 @@ fn list(key: &str, values: impl Iterator<Item = String>) -> String {
     format!("{key} = {{{}}}\n", values.join(","))
 }
 
-fn geometry(rows: &[MdhRow]) -> String {
+fn geometry(rows: &[&MdhRow]) -> String {
     let all = |key, value: &dyn Fn(usize, &MdhRow) -> String| {
         list(
             key,
@@ -117,7 +139,8 @@ fn geometry(rows: &[MdhRow]) -> String {
         all("gamma", &|_, row| quantity(&row.gamma)),
         all("alpha", &|_, row| quantity(&row.alpha)),
         all("mu", &|_, row| {
-            usize::from(row.motion != Motion::Fixed).to_string()
+            let passive = row.drive == Drive::Passive;
+            usize::from(row.motion != Motion::Fixed && !passive).to_string()
         }),
         all("theta", &|index, row| match row.motion {
             Motion::Revolute => variable("th", index, &row.theta),

@@ -64,6 +64,9 @@ impl Language for Python {
             Function::Power(p) => format!("np.power(np.abs({x}), {})", number(f64::from_bits(p))),
             Function::Sine => format!("np.sin({x})"),
             Function::Cosine => format!("np.cos({x})"),
+            Function::Reciprocal => format!("np.reciprocal({x})"),
+            Function::Root => format!("np.sqrt({x})"),
+            Function::RootOfOpposite => format!("np.sqrt(-({x}))"),
         }
     }
 }
@@ -150,7 +153,7 @@ fn tables(robot: &Robot) -> String {
             )
         })
         .collect();
-    let joints: String = (robot.mechanism.joints.iter())
+    let joints: String = (robot.mechanism.driven().iter())
         .map(|joint| format!("    {},\n", quoted(&joint.name)))
         .collect();
     let values: String = (Knowledge::of(robot).nominal.iter())
@@ -167,7 +170,7 @@ fn tables(robot: &Robot) -> String {
          # X of the description; not a number where it gives no value.\n\
          NOMINAL = np.array(\n    [\n{values}    ]\n)\n",
         quoted(&robot.mechanism.name),
-        robot.mechanism.joints.len(),
+        robot.mechanism.driven,
         robot.base.parameters.len(),
         quoted(&robot.description.hash)
     )
@@ -175,7 +178,7 @@ fn tables(robot: &Robot) -> String {
 
 fn definition(robot: &Robot, signature: &Prototype<'_>) -> String {
     let language = Python {
-        joints: robot.mechanism.joints.len(),
+        joints: robot.mechanism.driven,
     };
     let body = signature.body(robot, "out", &language);
     let mut text = opening(signature);

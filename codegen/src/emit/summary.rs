@@ -5,7 +5,7 @@ use crate::robot::Robot;
 
 /// Who made the file and of what, operation counts, columns; one line each, none ends in a space.
 pub fn summary(robot: &Robot, what_to_do: &str) -> Vec<String> {
-    let joints = match robot.mechanism.joints.len() {
+    let joints = match robot.mechanism.driven {
         1 => "1 joint".to_owned(),
         n => format!("{n} joints"),
     };

@@ -137,8 +137,9 @@ impl std::ops::Neg for Angle {
 /// A sum of joint angles along parallel axes plus a constant, such as q2 + q3 + pi/2.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AngleSum {
-    /// Joints and how often each is added (negative: subtracted), ordered by joint.
-    pub terms: Vec<(usize, i8)>,
+    /// Joints and the factor of each, 1 or -1 except where a joint follows another at its own
+    /// ratio; ordered by joint, none of them 0.
+    pub terms: Vec<(usize, f64)>,
     /// The constant.
     pub offset: Angle,
 }
@@ -147,7 +148,15 @@ impl AngleSum {
     /// The angle of one joint plus a constant.
     pub fn joint(joint: usize, offset: Angle) -> AngleSum {
         AngleSum {
-            terms: vec![(joint, 1)],
+            terms: vec![(joint, 1.0)],
+            offset,
+        }
+    }
+
+    /// Angles of joints, each with its factor, ordered by joint, plus a constant.
+    pub fn of(terms: &[(usize, f64)], offset: Angle) -> AngleSum {
+        AngleSum {
+            terms: terms.to_vec(),
             offset,
         }
     }
@@ -160,25 +169,17 @@ impl AngleSum {
         }
     }
 
-    /// The joints one by one, each with its sign: 2 q1 - q2 is q1, q1, -q2.
-    pub fn steps(&self) -> impl Iterator<Item = (usize, bool)> + '_ {
-        self.terms.iter().flat_map(|&(joint, count)| {
-            let step = (joint, count < 0);
-            std::iter::repeat_n(step, usize::from(count.unsigned_abs()))
-        })
-    }
-
     /// The sum of two sums.
     pub fn plus(&self, other: &AngleSum) -> AngleSum {
         let mut terms = self.terms.clone();
-        for &(joint, sign) in &other.terms {
+        for &(joint, factor) in &other.terms {
             match terms.iter_mut().find(|(known, _)| *known == joint) {
-                Some(term) => term.1 += sign,
-                None => terms.push((joint, sign)),
+                Some(term) => term.1 += factor,
+                None => terms.push((joint, factor)),
             }
         }
-        terms.retain(|&(_, sign)| sign != 0);
-        terms.sort_unstable();
+        terms.retain(|&(_, factor)| factor.abs() > Angle::ROUNDING);
+        terms.sort_by_key(|&(joint, _)| joint);
         AngleSum {
             terms,
             offset: self.offset + other.offset,
@@ -191,7 +192,7 @@ impl AngleSum {
             terms: self
                 .terms
                 .iter()
-                .map(|&(joint, sign)| (joint, -sign))
+                .map(|&(joint, factor)| (joint, -factor))
                 .collect(),
             offset: -self.offset,
         }

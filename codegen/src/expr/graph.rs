@@ -64,7 +64,7 @@ pub enum Input {
     Parameter(usize),
 }
 
-/// Functions that are neither sums nor products. Each is odd or even.
+/// Functions that are neither sums nor products. All but roots are odd or even.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Function {
     /// Sign, 0 at 0 (odd).
@@ -81,12 +81,19 @@ pub enum Function {
     Sine,
     /// Cosine of any expression (even).
     Cosine,
+    /// 1/x (odd).
+    Reciprocal,
+    /// Square root; NaN below 0. Neither odd nor even.
+    Root,
+    /// Square root of -x: what a root becomes whose operand's sign is pulled out.
+    RootOfOpposite,
 }
 
 impl Function {
     /// Whether f(-x) = -f(x); the others have f(-x) = f(x).
     fn is_odd(self) -> bool {
-        matches!(self, Function::Sign | Function::Tanh | Function::Sine)
+        use Function::{Reciprocal, Sign, Sine, Tanh};
+        matches!(self, Sign | Tanh | Sine | Reciprocal)
     }
 }
 
@@ -232,7 +239,7 @@ impl Graph {
             let (s, c) = angle.offset.sin_cos();
             return (self.constant(s), self.constant(c));
         }
-        if angle.terms[0].1 < 0 {
+        if angle.terms[0].1 < 0.0 {
             let (s, c) = self.sin_cos(&angle.negated());
             return (-s, c);
         }
@@ -355,6 +362,13 @@ impl Graph {
 
     /// A function of `x`; the sign of the operand is pulled out.
     pub fn call(&mut self, function: Function, x: Expr) -> Expr {
+        if let Some(value) = self.value(x) {
+            match function {
+                Function::Reciprocal => return self.constant(value.recip()),
+                Function::Root => return self.constant(value.sqrt()),
+                _ => {}
+            }
+        }
         if self.is_zero(x) {
             return match function {
                 Function::Bell | Function::Cosine => self.one,
@@ -362,6 +376,10 @@ impl Graph {
             };
         }
         let odd = function.is_odd();
+        let function = match function {
+            Function::Root if x.negative => Function::RootOfOpposite,
+            function => function,
+        };
         self.intern(Node::Call(function, x.positive()))
             .signed(odd && x.negative)
     }

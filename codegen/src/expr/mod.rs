@@ -5,6 +5,7 @@
 
 pub mod angle;
 pub mod count;
+pub mod derivative;
 pub mod graph;
 pub mod rotate;
 pub mod schedule;

@@ -6,8 +6,64 @@
 
 use std::collections::HashMap;
 
-use super::angle::AngleSum;
+use super::angle::{Angle, AngleSum};
 use super::graph::{Expr, Graph};
+
+/// An angle to turn by.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Turn {
+    /// A sum of positions and a constant.
+    Angle(AngleSum),
+    /// One of which sine and cosine are expressions, plus a constant.
+    Pair {
+        /// Sine without the constant.
+        sine: Expr,
+        /// Cosine without the constant.
+        cosine: Expr,
+        /// The constant.
+        offset: Angle,
+    },
+}
+
+impl Turn {
+    /// A constant turn.
+    pub fn constant(angle: Angle) -> Turn {
+        Turn::Angle(AngleSum::constant(angle))
+    }
+
+    /// Sine and cosine.
+    pub fn sin_cos(&self, graph: &mut Graph) -> (Expr, Expr) {
+        match self {
+            Turn::Angle(angle) => graph.sin_cos(angle),
+            Turn::Pair {
+                sine,
+                cosine,
+                offset,
+            } => {
+                let (s, c) = offset.sin_cos();
+                let (ss, cs) = (graph.scale(s, *sine), graph.scale(s, *cosine));
+                let (sc, cc) = (graph.scale(c, *sine), graph.scale(c, *cosine));
+                (graph.add(sc, cs), graph.sub(cc, ss))
+            }
+        }
+    }
+
+    /// The turn back.
+    pub fn negated(&self) -> Turn {
+        match self {
+            Turn::Angle(angle) => Turn::Angle(angle.negated()),
+            Turn::Pair {
+                sine,
+                cosine,
+                offset,
+            } => Turn::Pair {
+                sine: -*sine,
+                cosine: *cosine,
+                offset: -*offset,
+            },
+        }
+    }
+}
 
 /// Where a pair of components came from: `turned` by `angle`.
 #[derive(Clone, Debug)]
@@ -44,6 +100,22 @@ impl Rotator {
         self.turn(graph, (x, y), angle.clone())
     }
 
+    /// The same by any turn; only sums of angles are remembered.
+    pub fn by(&mut self, graph: &mut Graph, pair: (Expr, Expr), turn: &Turn) -> (Expr, Expr) {
+        match turn {
+            Turn::Angle(angle) if angle.terms.is_empty() && angle.offset.is_zero() => pair,
+            Turn::Angle(angle) => self.into_frame(graph, pair, angle),
+            Turn::Pair {
+                sine,
+                cosine,
+                offset,
+            } => {
+                let pair = self.by(graph, pair, &Turn::Angle(AngleSum::constant(*offset)));
+                turned(graph, pair, (*sine, *cosine))
+            }
+        }
+    }
+
     /// The origin of a pair, or of its mirror image (x, -y) as axes of opposite sense have it.
     fn origin(&self, (x, y): (Expr, Expr)) -> Option<Origin> {
         if let Some(origin) = self.origins.get(&(x, y)) {
@@ -58,12 +130,8 @@ impl Rotator {
     }
 
     fn turn(&mut self, graph: &mut Graph, (x, y): (Expr, Expr), angle: AngleSum) -> (Expr, Expr) {
-        let (s, c) = graph.sin_cos(&angle);
-        let cx = graph.mul(c, x);
-        let sy = graph.mul(s, y);
-        let sx = graph.mul(s, x);
-        let cy = graph.mul(c, y);
-        let turned = (graph.add(cx, sy), graph.sub(cy, sx));
+        let sin_cos = graph.sin_cos(&angle);
+        let turned = turned(graph, (x, y), sin_cos);
         self.origins.insert(
             turned,
             Origin {
@@ -73,4 +141,13 @@ impl Rotator {
         );
         turned
     }
+}
+
+/// (c x + s y, -s x + c y).
+fn turned(graph: &mut Graph, (x, y): (Expr, Expr), (s, c): (Expr, Expr)) -> (Expr, Expr) {
+    let cx = graph.mul(c, x);
+    let sy = graph.mul(s, y);
+    let sx = graph.mul(s, x);
+    let cy = graph.mul(c, y);
+    (graph.add(cx, sy), graph.sub(cy, sx))
 }

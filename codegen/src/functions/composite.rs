@@ -1,6 +1,8 @@
 //! A rigid body of symbols: inertia about the origin of a frame, first moments, mass.
 
-use crate::expr::{Angle, AngleSum, Expr, Graph, Input};
+use crate::derive::coordinate::Coordinate;
+use crate::expr::rotate::Turn;
+use crate::expr::{Angle, Expr, Graph};
 use crate::mechanism::{JointKind, Mechanism};
 
 use crate::derive::motion::Motions;
@@ -67,17 +69,17 @@ impl Composite {
     ) -> Composite {
         let joint = &mechanism.joints[index];
         let mut body = *self;
-        let mut theta = AngleSum::joint(index, joint.theta);
+        let coordinate = Coordinate::of(mechanism, &motions.solved, index);
+        let theta = coordinate.angle(joint);
         if joint.kind == JointKind::Prismatic {
-            theta = AngleSum::constant(joint.theta);
-            let (none, q) = (graph.zero(), graph.input(Input::Q(index)));
+            let (none, q) = (graph.zero(), coordinate.position(graph));
             body = body.moved(graph, [none, none, q]);
         }
         let angles = (joint.gamma, joint.alpha, &theta);
         body.moment = out_of_frame(graph, &mut motions.rotator, body.moment, angles);
         body.inertia = turned(graph, body.inertia, 2, &theta);
-        body.inertia = turned(graph, body.inertia, 0, &AngleSum::constant(joint.alpha));
-        body.inertia = turned(graph, body.inertia, 2, &AngleSum::constant(joint.gamma));
+        body.inertia = turned(graph, body.inertia, 0, &Turn::constant(joint.alpha));
+        body.inertia = turned(graph, body.inertia, 2, &Turn::constant(joint.gamma));
         let position = constant(graph, joint.position);
         body.moved(graph, position)
     }
@@ -120,12 +122,12 @@ impl Composite {
 }
 
 /// R J R^T of a turn by an angle about an axis.
-fn turned(graph: &mut Graph, inertia: [Vec3; 3], axis: usize, angle: &AngleSum) -> [Vec3; 3] {
-    if angle.terms.is_empty() && angle.offset == Angle::ZERO {
+fn turned(graph: &mut Graph, inertia: [Vec3; 3], axis: usize, angle: &Turn) -> [Vec3; 3] {
+    if *angle == Turn::constant(Angle::ZERO) {
         return inertia;
     }
     let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
-    let (s, c) = graph.sin_cos(angle);
+    let (s, c) = angle.sin_cos(graph);
     // (c x - s y, s x + c y)
     let mut turn = |x: Expr, y: Expr| {
         let (cx, sy) = (graph.mul(c, x), graph.mul(s, y));

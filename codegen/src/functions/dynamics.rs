@@ -6,6 +6,7 @@
 //! mass matrix from composite bodies (Walker, Orin 1982).
 
 use crate::base::BaseParameter;
+use crate::derive::coordinate::Coordinate;
 use crate::derive::motion::{Motion, Motions};
 use crate::derive::vector::{AXES, Screw, add, zero};
 use crate::derive::{ParameterKind, body};
@@ -90,7 +91,7 @@ fn handed_back(
     };
     let mut wrenches = vec![still; links.len()];
     let mut torques = vec![graph.zero(); links.len()];
-    for joint in (0..links.len()).rev() {
+    for &joint in mechanism.order.iter().rev() {
         let motion = motions.links[joint];
         for (index, &value) in links[joint].iter().enumerate() {
             if !graph.is_zero(value) {
@@ -107,7 +108,25 @@ fn handed_back(
             wrenches[parent] = plus(graph, &wrenches[parent], &back);
         }
     }
-    torques
+    driven(graph, mechanism, motions, &torques)
+}
+
+/// G^T times what the joints of the tree feel: one value per joint with a drive.
+fn driven(
+    graph: &mut Graph,
+    mechanism: &Mechanism,
+    motions: &Motions,
+    of_tree: &[Expr],
+) -> Vec<Expr> {
+    let mut sums = vec![graph.zero(); mechanism.driven];
+    for (joint, &value) in of_tree.iter().enumerate() {
+        let coordinate = Coordinate::of(mechanism, &motions.solved, joint);
+        for share in coordinate.shares(graph) {
+            let term = graph.mul(share.ratio, value);
+            sums[share.joint] = graph.add(sums[share.joint], term);
+        }
+    }
+    sums
 }
 
 /// M(q), by rows; M qdd is the part of tau that accelerations make, rotors included.
@@ -121,7 +140,7 @@ pub fn mass_matrix(
     let links = links(graph, mechanism, base);
     let mut composites: Vec<Composite> = links.iter().map(Composite::new).collect();
     let mut matrix = vec![vec![graph.zero(); n]; n];
-    for joint in (0..n).rev() {
+    for &joint in mechanism.order.iter().rev() {
         let composite = composites[joint];
         composite.name(graph, joint);
         let mut momentum = composite.momentum(graph, mechanism.joints[joint].kind);
@@ -138,8 +157,22 @@ pub fn mass_matrix(
             composites[parent] = composites[parent].plus(graph, &back);
         }
     }
+    // G^T M G, column by column, then row by row.
+    let mut driven = |rows: Vec<Vec<Expr>>| -> Vec<Vec<Expr>> {
+        let row = |row: &Vec<Expr>| self::driven(graph, mechanism, motions, row);
+        rows.iter().map(row).collect()
+    };
+    let half = transposed(&driven(matrix));
+    let mut matrix = driven(half);
     rotors(graph, base, &mut matrix);
     matrix
+}
+
+fn transposed(rows: &[Vec<Expr>]) -> Vec<Vec<Expr>> {
+    let width = rows.first().map_or(0, Vec::len);
+    (0..width)
+        .map(|column| rows.iter().map(|row| row[column]).collect())
+        .collect()
 }
 
 /// Adds what parameters beside the inertial ones have as momentum: B of B qd, which is constant.

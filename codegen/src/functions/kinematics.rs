@@ -1,8 +1,9 @@
 //! Where the tips of the robot are, and how fast the joints move them.
 
-use crate::expr::{AngleSum, Expr, Graph, Input};
+use crate::expr::{Expr, Graph};
 use crate::mechanism::{JointKind, Mechanism};
 
+use crate::derive::coordinate::Coordinate;
 use crate::derive::motion::Motions;
 use crate::derive::vector::{Vec3, add, constant, cross, dot, into_frame};
 
@@ -60,7 +61,7 @@ pub fn jacobian(
     tip: &Tip,
 ) -> Vec<Vec<Expr>> {
     let (frames, end) = at_tip(graph, mechanism, motions, tip);
-    let mut jacobian = vec![vec![graph.zero(); mechanism.joints.len()]; 6];
+    let mut jacobian = vec![vec![graph.zero(); mechanism.driven]; 6];
     for (joint, frame) in frames {
         let axis = frame.rows.map(|row| row[2]);
         let arm = add(graph, end.origin, frame.origin.map(|x| -x));
@@ -68,8 +69,13 @@ pub fn jacobian(
             JointKind::Revolute => (cross(graph, axis, arm), axis),
             JointKind::Prismatic => (axis, [graph.zero(); 3]),
         };
-        for (row, value) in linear.into_iter().chain(angular).enumerate() {
-            jacobian[row][joint] = value;
+        let coordinate = Coordinate::of(mechanism, &motions.solved, joint);
+        for share in coordinate.shares(graph) {
+            for (row, value) in linear.into_iter().chain(angular).enumerate() {
+                let value = graph.mul(share.ratio, value);
+                let place = &mut jacobian[row][share.joint];
+                *place = graph.add(*place, value);
+            }
         }
     }
     jacobian
@@ -126,10 +132,8 @@ fn step(
 ) -> Frame {
     let joint = &mechanism.joints[index];
     let position = constant(graph, joint.position);
-    let theta = match joint.kind {
-        JointKind::Revolute => AngleSum::joint(index, joint.theta),
-        JointKind::Prismatic => AngleSum::constant(joint.theta),
-    };
+    let coordinate = Coordinate::of(mechanism, &motions.solved, index);
+    let theta = coordinate.angle(joint);
     let angles = (joint.gamma, joint.alpha, &theta);
     let moved = before.rows.map(|row| dot(graph, row, position));
     let mut origin = add(graph, before.origin, moved);
@@ -137,7 +141,7 @@ fn step(
         .rows
         .map(|row| into_frame(graph, &mut motions.rotator, row, angles));
     if joint.kind == JointKind::Prismatic {
-        let q = graph.input(Input::Q(index));
+        let q = coordinate.position(graph);
         let slid = rows.map(|row| graph.mul(row[2], q));
         origin = add(graph, origin, slid);
     }

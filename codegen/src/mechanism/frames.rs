@@ -9,7 +9,7 @@ use nalgebra::Vector3;
 
 use super::pose::Pose;
 use super::{Body, Joint, JointKind};
-use crate::describe::{Limits, Snap};
+use crate::describe::{Drive, Limits, Snap};
 use crate::expr::Angle;
 
 /// Axes that differ by less than this (rad) are parallel, and angles that are this near to a
@@ -34,6 +34,8 @@ pub struct Axis {
     pub parent: Option<usize>,
     /// A frame with its origin on the axis and z along it, in the frame of the base.
     pub frame: Pose,
+    /// What moves it.
+    pub drive: Drive,
     /// Limits of the joint.
     pub limits: Limits,
     /// Bodies carried; poses and inertias still in the frame of the base and the body's own.

@@ -76,6 +76,7 @@ fn push(
         kind,
         parent,
         frame,
+        drive: joint.drive.clone(),
         limits: joint.limits,
         bodies: Vec::new(),
     });

@@ -1,6 +1,6 @@
 //! A gear that yields: the joint of a drive, and behind it that of the link.
 
-use super::{Joint, Mechanism};
+use super::{Follow, Joint, Mechanism};
 use crate::expr::Angle;
 
 impl Mechanism {
@@ -41,6 +41,38 @@ impl Mechanism {
         }
         let mut changed = self.clone();
         changed.joints = joints;
+        changed.driven += 1;
+        changed.order = self
+            .order
+            .iter()
+            .flat_map(|&at| match at == joint {
+                true => vec![joint, joint + 1],
+                false => vec![moved(at)],
+            })
+            .collect();
+        let both = |at: usize| match at == joint {
+            true => vec![joint, joint + 1],
+            false => vec![moved(at)],
+        };
+        changed.dyads = self
+            .dyads
+            .iter()
+            .map(|dyad| dyad.renumbered(both))
+            .collect();
+        for follower in &mut changed.follows {
+            let Follow::Sum(follower) = follower else {
+                continue;
+            };
+            // What followed the joint follows its link: drive and yielding together.
+            let terms = follower
+                .terms
+                .iter()
+                .flat_map(|&(at, by)| match at == joint {
+                    true => vec![(joint, by), (joint + 1, by)],
+                    false => vec![(moved(at), by)],
+                });
+            follower.terms = terms.collect();
+        }
         for effect in &mut changed.effects {
             effect.joints.iter_mut().for_each(|at| *at = moved(*at));
         }

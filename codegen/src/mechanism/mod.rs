@@ -4,14 +4,21 @@
 //! along the axes so that offsets vanish, fixed joints merged with their inertia, right angles
 //! exact. It is immutable, and nothing after it can fail.
 
+pub mod dyad;
 pub mod effects;
+pub mod follow;
 pub mod frames;
 pub mod from_mdh;
 pub mod from_urdf;
 mod gear;
 pub mod inertia;
+pub mod loops;
+pub mod plane;
 pub mod pose;
+pub mod ring;
 
+pub use dyad::Dyad;
+pub use follow::{Affine, Follow};
 pub use inertia::Standard;
 pub use pose::Pose;
 
@@ -40,7 +47,8 @@ pub struct Joint {
     pub name: String,
     /// Revolute or prismatic.
     pub kind: JointKind,
-    /// Index of the antecedent, `None` for the base; always smaller than the joint's own.
+    /// Index of the antecedent, `None` for the base; before the joint itself in
+    /// [`Mechanism::order`].
     pub parent: Option<usize>,
     /// Rotation about the antecedent's z.
     pub gamma: Angle,
@@ -88,8 +96,17 @@ pub struct Effect {
 pub struct Mechanism {
     /// Name of the robot.
     pub name: String,
-    /// Moving joints, antecedents first.
+    /// Moving joints: those with a drive of their own first, in the order of the description, then
+    /// those that follow them. The number of a joint is also that of the link it carries.
     pub joints: Vec<Joint>,
+    /// How many joints have a drive: the rows of every output, the columns of a log.
+    pub driven: usize,
+    /// How the joints from `driven` on follow.
+    pub follows: Vec<Follow>,
+    /// What closed loops make of their joints, each after those it needs.
+    pub dyads: Vec<Dyad>,
+    /// All joints, antecedents first.
+    pub order: Vec<usize>,
     /// Effects beside the rigid bodies.
     pub effects: Vec<Effect>,
     /// Angles taken for multiples of pi/2, in the description or between the joints' axes.
@@ -99,15 +116,19 @@ pub struct Mechanism {
 impl Mechanism {
     /// Brings a checked description into canonical form.
     pub fn new(description: &Description) -> Mechanism {
-        let (axes, mut snaps) = match &description.geometry {
-            Geometry::Urdf(tree) => (from_urdf::axes(tree), description.snaps.clone()),
-            Geometry::Mdh(rows) => (from_mdh::axes(rows), description.snaps.clone()),
-        };
-        let joints = frames::place(&axes, description.gravity, &mut snaps);
+        let (axes, closures) = axes(description);
+        let mut snaps = description.snaps.clone();
+        let placed = frames::place(&axes, description.gravity, &mut snaps);
+        let numbering = follow::numbering(&axes, &closures);
+        let joints = renumbered(placed, &numbering.numbers);
         let effects = effects::resolve(&joints, &description.effects);
         Mechanism {
             name: description.name.clone(),
             joints,
+            driven: numbering.driven,
+            follows: numbering.follows,
+            dyads: numbering.dyads,
+            order: numbering.numbers,
             effects,
             snaps,
         }
@@ -121,7 +142,7 @@ impl Mechanism {
             })?;
             effect.shape.first().map(|&zs| (joint, zs))
         };
-        (0..self.joints.len()).filter_map(zs)
+        (0..self.driven).filter_map(zs)
     }
 
     /// Indices of the joints from the base to `joint`, `joint` itself last.
@@ -135,4 +156,28 @@ impl Mechanism {
         chain.reverse();
         chain
     }
+}
+
+/// Why a closed loop of a description is not modelled, if there is one that is not.
+pub fn unsolved(description: &Description) -> Option<loops::LoopError> {
+    let (axes, closures) = axes(description);
+    follow::solve(&axes, &closures).err()
+}
+
+/// Axes in space and the loops that they close.
+fn axes(description: &Description) -> (Vec<frames::Axis>, Vec<ring::Closure>) {
+    match &description.geometry {
+        Geometry::Urdf(tree) => (from_urdf::axes(tree), vec![]),
+        Geometry::Mdh(rows) => from_mdh::axes(rows, &description.loops),
+    }
+}
+
+/// The joints in the order of their numbers, their antecedents by number.
+fn renumbered(joints: Vec<Joint>, numbers: &[usize]) -> Vec<Joint> {
+    let mut all: Vec<(usize, Joint)> = numbers.iter().copied().zip(joints).collect();
+    for (_, joint) in &mut all {
+        joint.parent = joint.parent.map(|parent| numbers[parent]);
+    }
+    all.sort_by_key(|&(number, _)| number);
+    all.into_iter().map(|(_, joint)| joint).collect()
 }

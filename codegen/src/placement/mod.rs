@@ -17,7 +17,7 @@ use crate::derive::vector::Screw;
 use crate::expr::{Expr, Graph};
 use crate::mechanism::Mechanism;
 use search::Entry;
-use transport::{Share, movers, path, shares};
+use transport::{Share, movers_along, shares};
 
 /// Replaces the inertial entries of D, P and R by cheaper ones of equal value.
 pub fn cheapest(
@@ -67,12 +67,7 @@ impl Frames<'_> {
     ) -> Frames<'a> {
         let links = 0..mechanism.joints.len();
         let movers = links
-            .map(|link| {
-                let frames = path(mechanism, link).into_iter();
-                frames
-                    .map(|frame| movers(graph, mechanism, motions, frame))
-                    .collect()
-            })
+            .map(|link| movers_along(graph, mechanism, motions, link))
             .collect();
         Frames {
             mechanism,

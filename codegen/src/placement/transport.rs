@@ -1,9 +1,10 @@
 //! Screws and wrenches in the frames between a link and the base.
 
 use crate::derive::body;
+use crate::derive::coordinate::Coordinate;
 use crate::derive::motion::{Motions, Mover};
 use crate::derive::vector::{Screw, add, constant, cross, out_of_frame};
-use crate::expr::{AngleSum, Graph, Input};
+use crate::expr::Graph;
 use crate::mechanism::{JointKind, Mechanism};
 
 /// A frame on the way from a link to the base.
@@ -28,13 +29,30 @@ pub fn path(mechanism: &Mechanism, link: usize) -> Vec<Frame> {
     path
 }
 
-/// The joints that move a frame, with their screws there.
-pub fn movers(
+/// The driven joints that move a link and with it each frame of its path as one body, with their
+/// screws there. Where a joint of the path follows a driven one, the frames behind it move with
+/// that in another way, and have no screw of it.
+pub fn movers_along(
     graph: &mut Graph,
     mechanism: &Mechanism,
     motions: &Motions,
-    frame: Frame,
-) -> Vec<Mover> {
+    link: usize,
+) -> Vec<Vec<Mover>> {
+    let mut passed: Vec<usize> = vec![];
+    let mut all = vec![];
+    for frame in path(mechanism, link) {
+        if let Frame::Turned(joint) = frame {
+            passed.extend(mechanism.moves_with(joint));
+        }
+        let mut movers = movers(graph, mechanism, motions, frame);
+        movers.retain(|mover| !passed.contains(&mover.joint));
+        all.push(movers);
+    }
+    all
+}
+
+/// The joints that move a frame, with their screws there.
+fn movers(graph: &mut Graph, mechanism: &Mechanism, motions: &Motions, frame: Frame) -> Vec<Mover> {
     let joint = match frame {
         Frame::Link(link) => return motions.movers[link].clone(),
         Frame::Turned(joint) => &mechanism.joints[joint],
@@ -129,12 +147,10 @@ fn turned(
 ) -> Screw {
     let joint = &mechanism.joints[index];
     let (mut moment, force) = (wrench.angular, wrench.linear);
-    let theta = match joint.kind {
-        JointKind::Revolute => AngleSum::joint(index, joint.theta),
-        JointKind::Prismatic => AngleSum::constant(joint.theta),
-    };
+    let coordinate = Coordinate::of(mechanism, &motions.solved, index);
+    let theta = coordinate.angle(joint);
     if joint.kind == JointKind::Prismatic {
-        let (zero, q) = (graph.zero(), graph.input(Input::Q(index)));
+        let (zero, q) = (graph.zero(), coordinate.position(graph));
         let lever = cross(graph, [zero, zero, q], force);
         moment = add(graph, moment, lever);
     }

@@ -79,8 +79,8 @@ fn sin_cos(graph: &Graph, index: usize, q: &[f64], qd: &[f64]) -> (Dual, Dual) {
     let angle = graph.angle(index);
     let (mut value, mut rate) = (angle.offset.value(), 0.0);
     for &(joint, sign) in &angle.terms {
-        value += f64::from(sign) * q[joint];
-        rate += f64::from(sign) * qd[joint];
+        value += sign * q[joint];
+        rate += sign * qd[joint];
     }
     let (s, c) = value.sin_cos();
     (Dual(s, c * rate), Dual(c, -s * rate))

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use idim_codegen::catalogue::EffectKind;
 use idim_codegen::describe::{
-    Description, EffectSpec, Geometry, Limits, MdhRow, Motion, Quantity, Span,
+    Description, Drive, EffectSpec, Geometry, Limits, MdhRow, Motion, Quantity, Span,
 };
 use serde_json::Value;
 
@@ -45,6 +45,7 @@ pub fn description(
         .unwrap()
         .iter()
         .map(|frame| MdhRow {
+            drive: Drive::Own,
             name: format!("joint{}", frame["j"]),
             motion: if frame["sigma"] == 1 {
                 Motion::Prismatic
@@ -83,6 +84,7 @@ pub fn description(
         gravity,
         lengths: named,
         geometry: Geometry::Mdh(rows),
+        loops: vec![],
         effects,
         scaled: vec![],
         identify: Default::default(),

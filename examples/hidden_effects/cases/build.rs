@@ -2,7 +2,7 @@
 
 use idim::codegen::catalogue::EffectKind;
 use idim::codegen::describe::{
-    Description, EffectSpec, Geometry, Limits, Motion, Pose, Span, UrdfInertial, UrdfJoint,
+    Description, Drive, EffectSpec, Geometry, Limits, Motion, Pose, Span, UrdfInertial, UrdfJoint,
     UrdfLink, UrdfTree,
 };
 
@@ -72,6 +72,7 @@ pub fn fasten(
         child,
         origin: Pose::default(),
         axis,
+        drive: Drive::Own,
         limits: Limits::default(),
         span: Span { line: 0, column: 0 },
     });
@@ -120,6 +121,7 @@ pub fn rock(tree: &mut UrdfTree, axis: [f64; 3]) -> String {
             child: rocking,
             origin: Pose::default(),
             axis,
+            drive: Drive::Own,
             limits: Limits::default(),
             span: Span { line: 0, column: 0 },
         },

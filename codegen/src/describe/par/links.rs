@@ -1,10 +1,11 @@
 //! What a `.par` says of the links and joints beside their geometry.
 
 use super::super::code;
-use super::super::description::{EffectSpec, MdhRow, Motion};
+use super::super::description::{Drive, EffectSpec, MdhRow, Motion};
 use super::super::diagnostic::Span;
 use super::super::findings::{Findings, finding};
 use super::super::toml::plain_effect;
+use super::document::Item;
 use super::values::Values;
 use crate::catalogue::EffectKind;
 
@@ -64,9 +65,10 @@ pub(super) fn effects(
     to: &mut Findings,
 ) -> (Vec<EffectSpec>, Vec<(String, f64)>) {
     let moving = rows.iter().enumerate();
-    let moving = moving.filter(|(_, row)| row.motion != Motion::Fixed);
+    let moving = moving.filter(|(_, row)| row.motion != Motion::Fixed && row.drive == Drive::Own);
     let silent = EFFECTS.iter().all(|(key, _)| values.entry(key).is_none());
     let lists = EFFECTS.map(|(key, _)| values.list(key, rows.len(), to));
+    warn_of_passive(rows, &lists, to);
     let (mut effects, mut known) = (Vec::new(), Vec::new());
     for (joint, (index, row)) in moving.enumerate() {
         if silent {
@@ -92,6 +94,20 @@ pub(super) fn effects(
         }
     }
     (effects, known)
+}
+
+/// Warns of effects on joints without a drive: they are no columns of their own.
+fn warn_of_passive(rows: &[MdhRow], lists: &[Option<&[Item<'_>]>; 3], to: &mut Findings) {
+    for ((key, _), list) in EFFECTS.iter().zip(lists) {
+        let items = rows.iter().zip(list.iter().copied().flatten());
+        let mut stated = items
+            .filter(|(row, item)| row.drive == Drive::Passive && item.text.parse() != Ok(0.0f64));
+        if let Some((row, item)) = stated.next() {
+            let message = format!("`{key}` of {}, which has no drive, is left out", row.name);
+            let help = "effects act on the joints that drive a closed loop";
+            to.warn(item.offset, finding(code::PAR_LEFT_OUT, message).help(help));
+        }
+    }
 }
 
 /// Gravity in frame 0; a third component that is a symbol is -9.81, as the format has it.

@@ -35,10 +35,11 @@ pub(super) fn read(text: &str, file: &str) -> Result<Description, Vec<Diagnostic
     let mut to = Findings::new(text, file);
     let document = document::read(text, &mut to);
     let values = Values::new(&document, &mut to);
-    let Some(count) = rows::links(&values, &mut to) else {
+    let Some(counts) = rows::counts(&values, &mut to) else {
         return Err(to.decide().err().unwrap_or_default());
     };
-    let (mut rows, snaps) = rows::read(&values, count, &mut to);
+    let (mut rows, snaps) = rows::read(&values, counts, &mut to);
+    let loops = rows::loops(&mut rows, counts);
     links::inertial(&values, &mut rows, &mut to);
     let (effects, parameters) = links::effects(&values, &rows, &mut to);
     let gravity = links::gravity(&values, &mut to);
@@ -56,6 +57,7 @@ pub(super) fn read(text: &str, file: &str) -> Result<Description, Vec<Diagnostic
         gravity,
         lengths: Vec::new(),
         geometry,
+        loops,
         effects,
         scaled: Vec::new(),
         identify: IdentifySpec::default(),

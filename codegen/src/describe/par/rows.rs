@@ -3,7 +3,7 @@
 use super::super::angle;
 use super::super::check;
 use super::super::code;
-use super::super::description::{Limits, MdhRow, Motion, Quantity, Snap};
+use super::super::description::{Drive, Limits, LoopSpec, MdhRow, Motion, Quantity, Snap};
 use super::super::findings::{Findings, finding};
 use super::document::Item;
 use super::values::Values;
@@ -11,8 +11,18 @@ use super::values::Values;
 /// More links than any robot has.
 const MAX_LINKS: usize = 10_000;
 
-/// The number of links; `None` where the robot is none that is modelled, which is reported.
-pub(super) fn links(values: &Values<'_, '_>, to: &mut Findings) -> Option<usize> {
+/// How many links, and how many joints that are cut to make a tree of closed loops.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Counts {
+    /// NL.
+    pub(super) links: usize,
+    /// NJ - NL.
+    pub(super) cuts: usize,
+}
+
+/// The numbers of links and cuts; `None` where the robot is none that is modelled, which is
+/// reported.
+pub(super) fn counts(values: &Values<'_, '_>, to: &mut Findings) -> Option<Counts> {
     let Some(item) = values.scalar("nl") else {
         let found = finding(
             code::KEY_MISSING,
@@ -26,32 +36,18 @@ pub(super) fn links(values: &Values<'_, '_>, to: &mut Findings) -> Option<usize>
         Some(item) => count(values, item, "`NJ`", (links, 2 * MAX_LINKS), to)?,
         None => links,
     };
-    let cut = (joints > links).then(|| values.scalar("nj")).flatten();
-    let kind = values.scalar("type").filter(|item| item.text == "2");
-    if let Some(item) = cut.or(kind) {
-        closed(links, joints, item, to);
+    let closed = values.scalar("type").filter(|item| item.text == "2");
+    if let Some(item) = closed.filter(|_| joints == links) {
+        let message = "`Type = 2` is a closed loop, but no joint is cut: NJ is NL";
+        let help = "NJ counts the cut joints too; a tree has Type = 1";
+        to.error(item.offset, finding(code::CLOSED_LOOP, message).help(help));
         return None;
     }
+    let cuts = joints - links;
     ["is_floating", "is_mobile"]
         .iter()
         .all(|key| stands(values, key, to))
-        .then_some(links)
-}
-
-fn closed(links: usize, joints: usize, item: Item<'_>, to: &mut Findings) {
-    let pairs: Vec<String> = (links + 1..=joints)
-        .map(|cut| format!("{cut} and {}", cut + joints - links))
-        .take(5)
-        .collect();
-    let message = match pairs.is_empty() {
-        true => "closed loops are not modelled yet".to_owned(),
-        false => format!(
-            "closed loops are not modelled yet: frames {} are the two sides of a cut joint",
-            pairs.join(", ")
-        ),
-    };
-    let help = "leave out the cut joints (NJ = NL, Type = 1) for the model of the open tree";
-    to.error(item.offset, finding(code::CLOSED_LOOP, message).help(help));
+        .then_some(Counts { links, cuts })
 }
 
 /// Whether the base stands still.
@@ -93,24 +89,52 @@ fn count(
     None
 }
 
-/// The rows without inertial values, and the angles taken as multiples of pi/2.
+/// The rows without inertial values, those of the links and behind them the two sides of each cut
+/// joint, and the angles taken as multiples of pi/2.
 pub(super) fn read(
     values: &Values<'_, '_>,
-    links: usize,
+    counts: Counts,
     to: &mut Findings,
 ) -> (Vec<MdhRow>, Vec<Snap>) {
-    let keys = ["ant", "sigma", "gamma", "b", "alpha", "d", "theta", "r"];
-    let lists = keys.map(|key| values.list(key, links, to));
+    let frames = counts.links + 2 * counts.cuts;
+    let keys = [
+        "ant", "sigma", "gamma", "b", "alpha", "d", "theta", "r", "mu",
+    ];
+    let lists = keys.map(|key| values.list(key, frames, to));
     let mut reader = Reader {
         values,
         snaps: Vec::new(),
     };
-    let rows = (0..links).map(|index| {
+    let rows = (0..frames).map(|index| {
         let item = |key: usize| lists[key].and_then(|list| list.get(index)).copied();
-        reader.row(index, item, to)
+        let row = reader.row(index, item, to);
+        let unmoved = item(8).is_some_and(|mu| mu.text == "0");
+        let drive = match counts.cuts > 0 && (unmoved || index >= counts.links) {
+            true => Drive::Passive,
+            false => Drive::Own,
+        };
+        MdhRow { drive, ..row }
     });
     let rows = rows.collect();
     (rows, reader.snaps)
+}
+
+/// Takes the two sides of each cut joint from behind the rows of the links.
+pub(super) fn loops(rows: &mut Vec<MdhRow>, counts: Counts) -> Vec<LoopSpec> {
+    let cuts = rows.split_off(counts.links.min(rows.len()));
+    let sides = cuts.iter().zip(cuts.iter().skip(counts.cuts)).enumerate();
+    sides
+        .map(|(index, (cut, meets))| {
+            let first = counts.links + index + 1;
+            LoopSpec {
+                name: format!("{first} = {}", first + counts.cuts),
+                cut: cut.clone(),
+                meets: meets.clone(),
+                flipped: false,
+                span: cut.span,
+            }
+        })
+        .collect()
 }
 
 struct Reader<'v, 'd, 't> {
@@ -163,6 +187,7 @@ impl Reader<'_, '_, '_> {
             theta,
             r,
             inertial: None,
+            drive: Drive::Own,
             limits: Limits::default(),
             span: to.span(offset),
         }

@@ -1,7 +1,8 @@
 //! Effects: what every joint gets, what one joint gets, and `[[effect]]`.
 
+use super::super::check::Known;
 use super::super::code;
-use super::super::description::{EffectSpec, Motion};
+use super::super::description::EffectSpec;
 use super::super::diagnostic::Span;
 use super::super::findings::{Findings, finding};
 use super::super::suggest;
@@ -115,7 +116,7 @@ fn shape(table: &mut Table<'_>, kind: EffectKind, to: &mut Findings) -> Vec<(&'s
 /// Reads one `[[effect]]`.
 pub(super) fn on_joints(
     value: Value<'_>,
-    joints: &[(String, Motion)],
+    joints: &[Known],
     to: &mut Findings,
 ) -> Option<EffectSpec> {
     let mut table = Table::from_value(value, "[[effect]]", to)?;
@@ -137,7 +138,7 @@ pub(super) fn on_joints(
 fn names(
     table: &mut Table<'_>,
     kind: EffectKind,
-    joints: &[(String, Motion)],
+    joints: &[Known],
     to: &mut Findings,
 ) -> Option<Vec<String>> {
     let (one, several) = (table.get("joint"), table.get("joints"));
@@ -174,24 +175,16 @@ fn names(
     None
 }
 
-/// The name of a moving joint.
-fn moving<'j>(
-    value: Value<'_>,
-    joints: &'j [(String, Motion)],
-    to: &mut Findings,
-) -> Option<&'j str> {
+/// The name of a joint with a drive.
+fn moving<'j>(value: Value<'_>, joints: &'j [Known], to: &mut Findings) -> Option<&'j str> {
     let wanted = value::text(value, "a joint", to)?;
-    let found = joints.iter().find(|(name, _)| name == wanted);
-    let mistake = match found {
-        Some((name, motion)) if *motion != Motion::Fixed => return Some(name),
-        Some(_) => finding(
-            code::EFFECT_JOINT,
-            format!("joint `{wanted}` does not move"),
-        )
-        .help("effects act on moving joints"),
+    let found = joints.iter().find(|joint| joint.name == wanted);
+    let mistake = match found.map(|joint| (joint, joint.idle())) {
+        Some((joint, None)) => return Some(&joint.name),
+        Some((_, Some((why, help)))) => finding(code::EFFECT_JOINT, why).help(help),
         None => {
-            let moving = joints.iter().filter(|(_, motion)| *motion != Motion::Fixed);
-            let help = to.suggest(wanted, moving.map(|(name, _)| name.as_str()));
+            let driven = joints.iter().filter(|joint| joint.is_driven());
+            let help = to.suggest(wanted, driven.map(|joint| joint.name.as_str()));
             finding(code::EFFECT_JOINT, format!("there is no joint `{wanted}`")).help(help)
         }
     };

@@ -1,11 +1,13 @@
 //! Where the joints are: `[[joint]]` rows here, or a URDF with `[joint.NAME]` tables beside it.
 
+use super::super::check::{self, Known};
 use super::super::code;
-use super::super::description::{Geometry, Limits, Motion, Snap, UrdfTree};
+use super::super::description::{Geometry, Limits, LoopSpec, Snap, UrdfTree};
 use super::super::diagnostic::Diagnostic;
 use super::super::findings::{Findings, finding};
 use super::super::urdf;
 use super::joint::{self, Extras};
+use super::loops;
 use super::rows;
 use super::table::{Table, Value, in_text_order, wrong_type};
 use toml::de::DeValue;
@@ -14,6 +16,8 @@ use toml::de::DeValue;
 pub(super) struct Frame {
     /// Rows or tree.
     pub(super) geometry: Geometry,
+    /// Closed loops.
+    pub(super) loops: Vec<LoopSpec>,
     /// Effects and gains, one entry per joint of the geometry.
     pub(super) extras: Vec<Extras>,
     /// Angles taken as multiples of pi/2.
@@ -48,7 +52,10 @@ pub(super) fn from_rows(
         None => Vec::new(),
     };
     let read = rows::read(&values, lengths, to);
+    let joints: Vec<Known> = read.rows.iter().map(Known::of_row).collect();
+    check::mimics(&joints, to);
     Frame {
+        loops: loops::read(table, &read.rows, lengths, to),
         geometry: Geometry::Mdh(read.rows),
         extras: read.extras,
         snaps: read.snaps,
@@ -85,6 +92,7 @@ pub(super) fn from_urdf(
     }
     Ok(Frame {
         geometry: Geometry::Urdf(tree),
+        loops: vec![],
         extras,
         snaps: robot.snaps,
         name: Some(robot.name),
@@ -114,7 +122,7 @@ fn companion(
     let read = joint::extras(&mut table, to);
     table.finish(to);
     let joint = &mut tree.joints[index];
-    joint::check_motion(name, joint.motion, &read, offset, to);
+    joint::check_motion(&Known::of_urdf(joint), &read, offset, to);
     let (old, both) = (
         joint.limits,
         stated.lower.is_some() && stated.upper.is_some(),
@@ -141,10 +149,8 @@ fn merged(old: Limits, stated: Limits) -> Limits {
     }
 }
 
-/// The settings of the joints that move.
-pub(super) fn of_moving<'e>(joints: &[(String, Motion)], extras: &'e [Extras]) -> Vec<&'e Extras> {
-    let moves = |(joint, extras): (&(String, Motion), &'e Extras)| {
-        (joint.1 != Motion::Fixed).then_some(extras)
-    };
-    joints.iter().zip(extras).filter_map(moves).collect()
+/// The settings of the joints with a drive.
+pub(super) fn of_driven<'e>(joints: &[Known], extras: &'e [Extras]) -> Vec<&'e Extras> {
+    let driven = |(joint, extras): (&Known, &'e Extras)| joint.is_driven().then_some(extras);
+    joints.iter().zip(extras).filter_map(driven).collect()
 }

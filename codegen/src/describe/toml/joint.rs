@@ -1,7 +1,8 @@
 //! What a `[[joint]]` row or a `[joint.NAME]` table says beside the geometry.
 
+use super::super::check::Known;
 use super::super::code;
-use super::super::description::{Limits, Motion};
+use super::super::description::{Drive, Limits, Mimic};
 use super::super::findings::{Findings, finding};
 use super::effects::{self, Wanted};
 use super::table::{Table, Value};
@@ -29,18 +30,59 @@ pub(super) fn extras(table: &mut Table<'_>, to: &mut Findings) -> Extras {
     Extras { effects, gain }
 }
 
-/// Reports effects or a gain of a joint that does not move.
-pub(super) fn check_motion(
-    name: &str,
-    motion: Motion,
-    extras: &Extras,
-    offset: usize,
-    to: &mut Findings,
-) {
-    if motion == Motion::Fixed && (extras.effects.is_some() || extras.gain.is_some()) {
-        let message = format!("joint `{name}` does not move: it has neither effects nor a gain");
-        to.error(offset, finding(code::EFFECT_JOINT, message));
+/// Reports effects or a gain of a joint without a drive.
+pub(super) fn check_motion(joint: &Known, extras: &Extras, offset: usize, to: &mut Findings) {
+    if let Some((why, help)) = joint.idle()
+        && (extras.effects.is_some() || extras.gain.is_some())
+    {
+        let message = format!("{why}: it has neither effects nor a gain");
+        to.error(offset, finding(code::EFFECT_JOINT, message).help(help));
     }
+}
+
+/// Reads `passive = true`, or `mimic = { joint = "a", multiplier = 2, offset = 0 }`.
+pub(super) fn drive(table: &mut Table<'_>, to: &mut Findings) -> Drive {
+    let passive = table.get("passive");
+    let is_passive =
+        passive.and_then(|value| value::flag(value, &table.path("passive"), to)) == Some(true);
+    let Some(value) = table.get("mimic") else {
+        return if is_passive {
+            Drive::Passive
+        } else {
+            Drive::Own
+        };
+    };
+    if let (true, Some(passive)) = (is_passive, passive) {
+        let message = format!("{} both follows a joint and is passive", table.name);
+        to.error(passive.span().start, finding(code::KEYS_EXCLUDE, message));
+    }
+    let what = table.path("mimic");
+    let Some(mut mimic) = Table::from_value(value, &what, to) else {
+        return Drive::Own;
+    };
+    let followed = mimic.need("joint", to);
+    let followed = followed.and_then(|value| value::text(value, &mimic.path("joint"), to));
+    let mut number = |key| {
+        let value = mimic.get(key)?;
+        let number = value::number(value, &mimic.path(key), to)?;
+        Some((number, value.span().start))
+    };
+    let (multiplier, at) = number("multiplier").unwrap_or((1.0, 0));
+    let offset = number("offset").map_or(0.0, |(offset, _)| offset);
+    mimic.finish(to);
+    if multiplier == 0.0 {
+        let message = format!("the multiplier of {what} is 0");
+        let help = "a joint that does not follow is fixed";
+        to.error(at, finding(code::NUMBER_RANGE, message).help(help));
+    }
+    followed.map_or(Drive::Own, |joint| {
+        Drive::Mimic(Mimic {
+            joint: joint.to_owned(),
+            multiplier,
+            offset,
+            span: to.span(value.span().start),
+        })
+    })
 }
 
 /// Reads `limits`: `[lower, upper]`, or a table of lower, upper, velocity, effort.

@@ -6,6 +6,7 @@
 mod effects;
 mod frame;
 mod joint;
+mod loops;
 mod named;
 mod options;
 mod rest;
@@ -151,6 +152,7 @@ fn assemble(
         gravity: rest.gravity,
         lengths,
         geometry: frame.geometry,
+        loops: frame.loops,
         effects: rest.effects,
         scaled: rest.scaled,
         identify: rest.identify,

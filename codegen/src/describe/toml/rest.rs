@@ -1,13 +1,12 @@
 //! Everything of a description but the geometry.
 
+use super::super::check::Known;
 use super::super::code;
-use super::super::description::{
-    DrivesSpec, EffectSpec, IdentifySpec, Motion, PriorSpec, ScaledParameter,
-};
+use super::super::description::{DrivesSpec, EffectSpec, IdentifySpec, PriorSpec, ScaledParameter};
 use super::super::diagnostic::Span;
 use super::super::findings::{Findings, finding};
 use super::effects::{self, Wanted};
-use super::frame::of_moving;
+use super::frame::of_driven;
 use super::joint::Extras;
 use super::named;
 use super::options;
@@ -41,7 +40,7 @@ impl Rest {
     /// Reads the tables; `extras` has one entry per joint.
     pub(super) fn read(
         table: &mut Table<'_>,
-        joints: &[(String, Motion)],
+        joints: &[Known],
         extras: &[Extras],
         lengths: &[(String, f64)],
         to: &mut Findings,
@@ -64,7 +63,7 @@ impl Rest {
             effects: all_effects(table, joints, extras, drives.link_side, to),
             scaled: scaled.unwrap_or_default(),
             identify: identify.unwrap_or_default(),
-            drives: drives.settle(&of_moving(joints, extras), to),
+            drives: drives.settle(&of_driven(joints, extras), to),
             parameters: parameters.unwrap_or_default(),
             prior: table
                 .get("prior")
@@ -95,7 +94,7 @@ fn gravity(table: &mut Table<'_>, to: &mut Findings) -> [f64; 3] {
 /// Joint by joint, then `[[effect]]`.
 fn all_effects(
     table: &mut Table<'_>,
-    joints: &[(String, Motion)],
+    joints: &[Known],
     extras: &[Extras],
     link_side: bool,
     to: &mut Findings,
@@ -105,10 +104,10 @@ fn all_effects(
         .and_then(|value| effects::wanted(value, "`effects`", to));
     let common = common.unwrap_or_else(|| default_effects(link_side));
     let mut all = Vec::new();
-    for ((name, motion), extras) in joints.iter().zip(extras) {
-        if *motion != Motion::Fixed {
+    for (joint, extras) in joints.iter().zip(extras) {
+        if joint.is_driven() {
             let wanted = extras.effects.as_ref().unwrap_or(&common);
-            all.extend(wanted.iter().map(|effect| effect.on(name)));
+            all.extend(wanted.iter().map(|effect| effect.on(&joint.name)));
         }
     }
     if let Some(value) = table.get("effect")

@@ -1,9 +1,9 @@
 //! `[[joint]]`: the rows of a modified Denavit-Hartenberg table.
 
 use super::super::angle;
-use super::super::check::{self, Named};
+use super::super::check::{self, Known, Named};
 use super::super::code;
-use super::super::description::{MdhRow, Motion, Quantity, Snap};
+use super::super::description::{Drive, Limits, MdhRow, Motion, Quantity, Snap};
 use super::super::findings::{Findings, finding};
 use super::joint::{self, Extras};
 use super::table::{Table, Value};
@@ -57,10 +57,14 @@ pub(super) fn read(values: &[Value<'_>], lengths: &[(String, f64)], to: &mut Fin
     all
 }
 
-struct RowReader<'r, 't> {
-    table: Table<'t>,
-    lengths: &'r [(String, f64)],
-    snaps: &'r mut Vec<Snap>,
+/// Reads a row, or a frame of a loop.
+pub(super) struct RowReader<'r, 't> {
+    /// Its keys.
+    pub(super) table: Table<'t>,
+    /// Named lengths.
+    pub(super) lengths: &'r [(String, f64)],
+    /// Angles taken as multiples of pi/2.
+    pub(super) snaps: &'r mut Vec<Snap>,
 }
 
 impl RowReader<'_, '_> {
@@ -77,14 +81,37 @@ impl RowReader<'_, '_> {
             theta: self.angle("theta", &name, to),
             r: self.length("r", to),
             inertial: None,
+            drive: joint::drive(&mut self.table, to),
             limits: joint::limits(&mut self.table, to),
             name,
             motion,
             span,
         };
         let extras = joint::extras(&mut self.table, to);
-        joint::check_motion(&row.name, row.motion, &extras, self.table.offset, to);
+        joint::check_motion(&Known::of_row(&row), &extras, self.table.offset, to);
         (row, extras)
+    }
+
+    /// A frame behind `rows` rows, fixed to one of them, or a joint that turns in its place.
+    pub(super) fn frame(&mut self, rows: usize, motion: Motion, to: &mut Findings) -> MdhRow {
+        let name = self.table.name.clone();
+        // Which of the rows it hangs on cannot be guessed.
+        self.table.need("ant", to);
+        MdhRow {
+            ant: self.antecedent(rows, to),
+            gamma: self.angle("gamma", &name, to),
+            b: self.length("b", to),
+            alpha: self.angle("alpha", &name, to),
+            d: self.length("d", to),
+            theta: self.angle("theta", &name, to),
+            r: self.length("r", to),
+            drive: Drive::Passive,
+            inertial: None,
+            limits: Limits::default(),
+            span: to.span(self.table.offset),
+            name,
+            motion,
+        }
     }
 
     fn name(&mut self, index: usize, to: &mut Findings) -> String {

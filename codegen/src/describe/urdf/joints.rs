@@ -2,7 +2,7 @@
 
 use super::super::check::Named;
 use super::super::code;
-use super::super::description::Motion;
+use super::super::description::{Drive, Mimic, Motion};
 use super::super::findings::{Findings, finding};
 use super::super::suggest;
 use super::super::tree::Edge;
@@ -10,7 +10,6 @@ use super::digest::Digest;
 use super::element::Element;
 use super::number;
 use super::origin;
-use std::collections::HashSet;
 
 const MATTER: [&str; 6] = ["parent", "child", "origin", "axis", "limit", "mimic"];
 const LIMITS: [&str; 4] = ["lower", "upper", "effort", "velocity"];
@@ -39,8 +38,8 @@ pub(super) struct JointText {
     pub(super) limit: Option<usize>,
     /// Which of lower, upper, effort, velocity are stated.
     pub(super) stated: [bool; 4],
-    /// The joint that it mimics, if it does.
-    pub(super) mimic: Option<Named>,
+    /// What moves it.
+    pub(super) drive: Drive,
 }
 
 /// Reads a joint into the digest.
@@ -70,7 +69,7 @@ pub(super) fn read(joint: Element<'_>, digest: &mut Digest, to: &mut Findings) -
         _ => Motion::Fixed,
     };
     let continuous = kind == "continuous";
-    let mimic = mimic(joint, owner, to);
+    let drive = drive(joint, owner, to);
     JointText {
         edge,
         motion,
@@ -79,7 +78,7 @@ pub(super) fn read(joint: Element<'_>, digest: &mut Digest, to: &mut Findings) -
         axis,
         limit,
         stated,
-        mimic,
+        drive,
     }
 }
 
@@ -216,48 +215,37 @@ fn dynamics(joint: Element<'_>, owner: &str, to: &mut Findings) {
     }
 }
 
-fn mimic(joint: Element<'_>, owner: &str, to: &mut Findings) -> Option<Named> {
-    let mimic = joint.child("mimic", owner, to)?;
-    let followed = mimic.need("joint", owner, to)?;
-    Some(Named {
-        name: followed.text.trim().to_owned(),
-        span: to.span(followed.offset),
-    })
-}
-
-/// Reports joints that follow others: there are no constraints between joints yet.
-pub(super) fn check_mimic(joints: &[JointText], to: &mut Findings) {
-    let names: HashSet<&str> = joints
-        .iter()
-        .map(|joint| joint.edge.named.name.as_str())
-        .collect();
-    for joint in joints {
-        let Some(followed) = &joint.mimic else {
-            continue;
+/// `<mimic joint="a" multiplier="2" offset="0"/>`.
+fn drive(joint: Element<'_>, owner: &str, to: &mut Findings) -> Drive {
+    let Some(mimic) = joint.child("mimic", owner, to) else {
+        return Drive::Own;
+    };
+    mimic.check_attributes(&["joint", "multiplier", "offset"], owner, to);
+    let Some(followed) = mimic.need("joint", owner, to) else {
+        return Drive::Own;
+    };
+    let mut number = |name: &str, default: f64| {
+        let Some(found) = mimic.attribute(name) else {
+            return default;
         };
-        let (name, other) = (&joint.edge.named.name, &followed.name);
-        let (why, help) = if name == other {
-            (
-                "itself".to_owned(),
-                "name the joint that it follows".to_owned(),
-            )
-        } else if names.contains(other.as_str()) {
-            let help = "make it fixed, or give it a drive of its own";
-            (
-                format!("`{other}`, which is not yet supported"),
-                help.to_owned(),
-            )
-        } else {
-            let known = joints.iter().map(|joint| joint.edge.named.name.as_str());
-            (
-                format!("`{other}`, which is no joint"),
-                to.suggest(other, known),
-            )
-        };
-        let message = format!("joint `{name}` mimics {why}");
-        to.error_at(
-            followed.span,
-            finding(code::JOINT_UNSUPPORTED, message).help(help),
+        let what = format!("{name} of <mimic> in {owner}");
+        let text = number::checked(found, &what, 1, to);
+        text.and_then(|text| text.trim().parse().ok())
+            .unwrap_or(default)
+    };
+    let (multiplier, offset) = (number("multiplier", 1.0), number("offset", 0.0));
+    if multiplier == 0.0 {
+        let message = format!("the multiplier of <mimic> in {owner} is 0");
+        let help = "a joint that does not follow is fixed";
+        to.error(
+            mimic.offset(),
+            finding(code::NUMBER_RANGE, message).help(help),
         );
     }
+    Drive::Mimic(Mimic {
+        joint: followed.text.trim().to_owned(),
+        multiplier,
+        offset,
+        span: to.span(followed.offset),
+    })
 }

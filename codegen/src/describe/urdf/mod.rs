@@ -20,6 +20,7 @@ mod walk;
 #[cfg(test)]
 mod tests;
 
+use super::check::{self, Known};
 use super::code;
 use super::description::{Snap, UrdfTree};
 use super::diagnostic::{Diagnostic, Span};
@@ -79,6 +80,8 @@ fn read_robot(text: &str, to: &mut Findings) -> Option<(String, UrdfTree, Vec<Sn
         }
     };
     let (tree, snaps) = texts.with_values(&robot, order, to)?;
+    let joints: Vec<Known> = tree.joints.iter().map(Known::of_urdf).collect();
+    check::mimics(&joints, to);
     massless::check(&tree, to);
     Some((name, tree, snaps))
 }

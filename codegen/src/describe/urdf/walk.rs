@@ -36,7 +36,6 @@ impl Texts {
                 _ => {}
             }
         }
-        joints::check_mimic(&joints, to);
         warn_of_meshes(root, to);
         let digest = digest.finish();
         Some(Texts {
@@ -82,6 +81,7 @@ impl Texts {
             child: 0,
             origin: values::origin(joint, text, &mut snaps, to),
             axis: values::axis(joint, text, &mut snaps, to),
+            drive: text.drive.clone(),
             limits: values::limits(joint, text, to),
             span: text.edge.named.span,
         });

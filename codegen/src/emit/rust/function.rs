@@ -73,6 +73,9 @@ impl Language for Rust {
             }
             expr::Function::Sine => format!("{x}.sin_cos().0"),
             expr::Function::Cosine => format!("{x}.sin_cos().1"),
+            expr::Function::Reciprocal => format!("{x}.reciprocal()"),
+            expr::Function::Root => format!("{x}.root()"),
+            expr::Function::RootOfOpposite => format!("(-{x}).root()"),
         }
     }
 }

@@ -16,7 +16,7 @@ pub fn index(sources: &[Source]) -> Result<String, String> {
         let doc = format!(
             " `{}`: {} joints, {} base parameters.",
             robot.mechanism.name,
-            robot.mechanism.joints.len(),
+            robot.mechanism.driven,
             robot.base.parameters.len()
         );
         quote! {

@@ -78,7 +78,7 @@ fn imports() -> TokenStream {
 }
 
 fn constants(robot: &Robot) -> TokenStream {
-    let n = Literal::usize_unsuffixed(robot.mechanism.joints.len());
+    let n = Literal::usize_unsuffixed(robot.mechanism.driven);
     let np = Literal::usize_unsuffixed(robot.base.parameters.len());
     let (name, hash) = (&robot.mechanism.name, &robot.description.hash);
     quote! {

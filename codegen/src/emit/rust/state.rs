@@ -18,12 +18,15 @@ pub fn state(robot: &Robot) -> Result<TokenStream, String> {
     let mut names = TokenStream::new();
     for trig in trig(robot) {
         let text = trig.text();
-        let simple = trig.angle.steps().count() == 1 && trig.angle.offset.is_zero();
         let sum = trig.code(
             |joint| format!("q[{joint}]"),
             |value| format!("T::splat({})", Literal::f64_unsuffixed(value)),
         );
-        let sum = parsed(&if simple { sum } else { format!("({sum})") })?;
+        let sum = parsed(&if trig.is_plain() {
+            sum
+        } else {
+            format!("({sum})")
+        })?;
         let mut pair = Vec::new();
         for (name, function) in [(&trig.sine, "sin"), (&trig.cosine, "cos")] {
             let Some(name) = name.as_ref().map(|name| format_ident!("{name}")) else {

@@ -12,7 +12,7 @@ use crate::robot::Robot;
 
 /// `[Joint; n]`.
 pub fn joints(robot: &Robot) -> TokenStream {
-    let joints = robot.mechanism.joints.iter().map(|joint| {
+    let joints = robot.mechanism.driven().iter().map(|joint| {
         let name = &joint.name;
         let kind = match joint.kind {
             JointKind::Revolute => quote! { JointKind::Revolute },

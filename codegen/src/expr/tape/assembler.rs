@@ -142,11 +142,7 @@ impl<'a> Assembler<'a> {
         (0..self.graph.angle_count())
             .map(|index| {
                 let angle = self.graph.angle(index);
-                let terms = angle
-                    .terms
-                    .iter()
-                    .map(|&(joint, sign)| (joint, f64::from(sign)));
-                (terms.collect(), angle.offset.value())
+                (angle.terms.clone(), angle.offset.value())
             })
             .collect()
     }

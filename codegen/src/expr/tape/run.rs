@@ -201,5 +201,8 @@ fn call(function: Function, x: f64) -> f64 {
         Function::Power(p) => x.abs().powf(f64::from_bits(p)),
         Function::Sine => x.sin(),
         Function::Cosine => x.cos(),
+        Function::Reciprocal => x.recip(),
+        Function::Root => x.sqrt(),
+        Function::RootOfOpposite => (-x).sqrt(),
     }
 }

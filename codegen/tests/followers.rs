@@ -1,0 +1,263 @@
+//! Joints that follow others: the models in the driven joints against those of the open tree,
+//! G^T D_tree and so on, and against the identities that every model obeys.
+
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    reason = "a test fails by panicking"
+)]
+
+mod projected;
+#[allow(
+    dead_code,
+    reason = "of the reference robots only the files are read here"
+)]
+mod robots;
+
+use idim_codegen::mechanism::{Affine, Follow};
+use idim_codegen::robot::Robot;
+use projected::{check, check_within, robot};
+use robots::reference;
+use serde_json::Value;
+
+/// Two fingers on a slide: one follows a motor at half its speed, its tip follows it in turn, and a
+/// rack follows the motor as a displacement. Axes of all kinds, numbers without meaning.
+const HAND: &str = r#"
+    gravity = [1.0, -2.0, -9.0]
+    [[joint]]
+    name = "slide"
+    kind = "prismatic"
+    alpha = 0.4
+    [[joint]]
+    name = "finger"
+    kind = "revolute"
+    gamma = 0.3
+    alpha = "pi/2"
+    d = 0.1
+    r = 0.05
+    mimic = { joint = "motor", multiplier = 0.5, offset = 0.2 }
+    [[joint]]
+    name = "tip"
+    kind = "revolute"
+    d = 0.07
+    mimic = { joint = "finger", multiplier = -1.5 }
+    [[joint]]
+    name = "motor"
+    kind = "revolute"
+    ant = 1
+    alpha = 0.2
+    d = -0.1
+    [[joint]]
+    name = "rack"
+    kind = "prismatic"
+    ant = 4
+    alpha = 1.1
+    d = 0.02
+    mimic = { joint = "motor", multiplier = 0.03, offset = 0.1 }
+    [[joint]]
+    name = "free"
+    kind = "revolute"
+    ant = 5
+    alpha = -0.8
+    d = 0.05
+"#;
+
+/// The parallelogram robot of SYMORO's examples, with the lengths of the reference.
+const SR400: &str = "(* Robotname = 'SR400' *)
+NL = 8
+NJ = 9
+NF = 10
+Type = 2
+d2 = 0.5
+d3 = 0.9
+d4 = 0.15
+d8 = 0.4
+r4 = 0.8
+ant = {0,1,2,3,4,5,1,7,8,3}
+sigma = {0,0,0,0,0,0,0,0,0,2}
+b = {1,0,0,0,0,0,0,0,0,0}
+d = {0,d2,d3,d4,0,0,d2,-d8,d3,-d8}
+r = {0,0,0,r4,0,0,0,0,0,0}
+gamma = {0,0,0,0,0,0,0,0,0,pi/2}
+alpha = {0,-pi/2,0,-pi/2,pi/2,-pi/2,-pi/2,0,0,0}
+mu = {1,1,0,1,1,1,1,0,0,0}
+theta = {th1,th2,th3,th4,th5,th6,th7,th8,th9,0}
+IA = {IA1,IA2,0,IA4,IA5,IA6,IA7,0}
+G = {0,0,G3}
+";
+
+#[test]
+fn parallelogram_of_sr400_has_the_base_parameters_of_the_reference() {
+    let robot = robot("sr400.par", SR400);
+    let mechanism = &robot.mechanism;
+    let names: Vec<&str> = mechanism.driven().iter().map(|j| j.name.as_str()).collect();
+    assert_eq!(
+        names,
+        ["joint1", "joint2", "joint4", "joint5", "joint6", "joint7"]
+    );
+    // theta3 = theta7 - theta2 - pi/2, theta8 = theta2 - theta7
+    let half = std::f64::consts::FRAC_PI_2;
+    let sum = |terms: &[(usize, f64)], offset| {
+        Follow::Sum(Affine {
+            terms: terms.to_vec(),
+            offset,
+        })
+    };
+    let expected = [
+        sum(&[(1, -1.0), (5, 1.0)], -half),
+        sum(&[(1, 1.0), (5, -1.0)], 0.0),
+    ];
+    assert_eq!(mechanism.follows, expected);
+    assert_eq!(robot.base.parameters.len(), 42);
+    check(&robot);
+    let rigid = SR400.replace(
+        "IA = {IA1,IA2,0,IA4,IA5,IA6,IA7,0}",
+        "IA = {0,0,0,0,0,0,0,0}",
+    );
+    let rigid = projected::robot("sr400.par", &rigid);
+    assert_eq!(rigid.base.parameters.len(), 39);
+}
+
+/// Crank, coupler and rocker of no special lengths on a turning column, a tool on the coupler.
+const FOUR_BAR: &str = r#"
+    gravity = [1.0, -2.0, -9.0]
+    [[joint]]
+    name = "column"
+    kind = "revolute"
+    [[joint]]
+    name = "crank"
+    kind = "revolute"
+    alpha = "pi/2"
+    d = 0.1
+    theta = 0.3
+    [[joint]]
+    name = "coupler"
+    kind = "revolute"
+    d = 0.2
+    passive = true
+    [[joint]]
+    name = "tool"
+    kind = "revolute"
+    d = 0.3
+    alpha = 0.7
+    [[joint]]
+    name = "rocker"
+    kind = "revolute"
+    ant = 1
+    alpha = "-pi/2"
+    d = 0.7
+    r = 0.1
+    passive = true
+    [[loop]]
+    name = "four-bar"
+    cut = { ant = 3, d = 0.6, r = -0.02 }
+    meets = { ant = 5, alpha = "pi", d = 0.5, r = 0.08 }
+"#;
+
+#[test]
+fn four_bar_is_the_projected_tree() {
+    // The crank turns fully: shortest and longest are shorter than the others together.
+    for text in [
+        FOUR_BAR.to_owned(),
+        format!("{FOUR_BAR}    flipped = true\n"),
+    ] {
+        let robot = robot("four_bar.toml", &text);
+        assert_eq!(robot.mechanism.driven, 3);
+        assert_eq!(robot.mechanism.dyads.len(), 1);
+        check_within(&robot, &|q| robot.mechanism.bend(q) > 0.2, 1e-7);
+    }
+}
+
+/// A robot of the reference as the `.par` it comes from, with lengths of its symbols.
+fn symoro(source: &Value, lengths: &str) -> String {
+    let frames = source["frames"].as_array().unwrap();
+    let list = |key: &str| {
+        let of = |frame: &Value| match &frame[key] {
+            // A length of this name would be the list itself.
+            Value::String(text) if text == "d" => "0.5".to_owned(),
+            Value::String(text) => text.clone(),
+            number => number.to_string(),
+        };
+        let all: Vec<String> = frames.iter().map(of).collect();
+        format!("{key} = {{{}}}\n", all.join(","))
+    };
+    let name = source["name"].as_str().unwrap();
+    let mut text = format!("(* Robotname = '{name}' *)\n{lengths}Type = 2\nG = {{0,0,G3}}\n");
+    for key in ["NL", "NJ", "NF"] {
+        text += &format!("{key} = {}\n", source[key]);
+    }
+    for key in [
+        "ant", "sigma", "mu", "gamma", "b", "alpha", "d", "theta", "r",
+    ] {
+        text += &list(key);
+    }
+    text + &format!(
+        "IA = {{{}}}\n",
+        vec!["0"; source["NL"].as_u64().unwrap() as usize].join(",")
+    )
+}
+
+/// Rank of G^T Y_tree, measured here: two parallelograms in series, a rhombus, and a robot whose
+/// two cylinders move triangles. SYMORO prints the numbers of the open trees.
+#[test]
+fn loops_of_the_reference_are_the_projected_trees() {
+    let Some(geometry) = reference("mdh_geometry.json") else {
+        return;
+    };
+    let two = "g12 = 0.4\nd3 = 0.6\nd4 = 0.5\nd7 = 0.15\nd12 = 0.15\n";
+    let cylinders = "D3 = 0.35\nD4 = -0.4\nD7 = 0.8\nRL8 = 0.7\nD13 = 0.3\nD14 = 0.35\n\
+                     gam13 = 2.6\ngam14 = -2.2\n";
+    for (name, lengths, dyads) in [
+        ("testLoop", "", 0),
+        ("TwoLoops", two, 0),
+        ("AKR3000", cylinders, 2),
+    ] {
+        let robot = robot("x.par", &symoro(&geometry["robots"][name], lengths));
+        assert_eq!(robot.mechanism.dyads.len(), dyads, "{name}");
+        assert!(robot.base.gap > 1e6, "{name}: {:.1e}", robot.base.gap);
+        check_within(&robot, &|q| robot.mechanism.bend(q) > 0.6, 1e-7);
+    }
+}
+
+#[test]
+fn mimic_joints_are_the_projected_tree() {
+    let robot = robot("hand.toml", HAND);
+    let names: Vec<&str> = robot
+        .mechanism
+        .joints
+        .iter()
+        .map(|joint| joint.name.as_str())
+        .collect();
+    assert_eq!(names, ["slide", "motor", "free", "finger", "tip", "rack"]);
+    assert_eq!(robot.mechanism.driven, 3);
+    check(&robot);
+}
+
+/// What a joint carries when it follows at ratio m along the same axis is m^2 of its inertia: one
+/// base parameter for the pair, as counted by hand.
+#[test]
+fn mimic_on_parallel_axes_regroups_by_the_square_of_its_ratio() {
+    let text = r#"
+        gravity = [0, 0, 0]
+        effects = []
+        [[joint]]
+        name = "a"
+        kind = "revolute"
+        [[joint]]
+        name = "b"
+        kind = "revolute"
+        ant = 0
+        mimic = { joint = "a", multiplier = -3 }
+    "#;
+    let robot = robot("pair.toml", text);
+    let relations: Vec<String> = relations(&robot);
+    assert_eq!(relations, ["ZZ1 + 9*ZZ2"]);
+    check(&robot);
+}
+
+fn relations(robot: &Robot) -> Vec<String> {
+    let parameters = robot.base.parameters.iter();
+    parameters
+        .map(|parameter| parameter.relation_text())
+        .collect()
+}
