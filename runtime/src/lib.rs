@@ -16,6 +16,7 @@ pub mod lane;
 pub mod log;
 pub mod model;
 pub mod observe;
+pub mod online;
 pub mod report;
 pub mod settings;
 pub mod signal;

@@ -18,7 +18,7 @@ mod instruments;
 mod joined;
 mod likelihood;
 mod linear;
-mod noise;
+pub(crate) mod noise;
 mod nominal;
 mod null;
 mod options;

@@ -5,11 +5,11 @@ use std::ops::Range;
 use super::linear::dot;
 
 /// Order of the autoregression; 4 was enough for a low-pass of 50 Hz.
-pub(super) const ORDER: usize = 4;
+pub(crate) const ORDER: usize = 4;
 
 /// Noise of one joint: \\( x_t = \sum_k a_k x_{t-k} + \sigma e_t \\).
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Noise {
+pub(crate) struct Noise {
     pub ar: [f64; ORDER],
     pub sigma: f64,
 }
@@ -57,7 +57,7 @@ impl Noise {
 }
 
 /// What a whitened row counts for: as much as the least of the rows that it is made of.
-pub(super) fn effective(weights: &[f64], t: usize) -> f64 {
+pub(crate) fn effective(weights: &[f64], t: usize) -> f64 {
     weights[t.saturating_sub(ORDER)..=t]
         .iter()
         .copied()
@@ -73,7 +73,7 @@ fn positive(sigma: f64) -> f64 {
 }
 
 /// Reflection coefficients of an autocovariance (lags 0 to [`ORDER`]) by Levinson's recursion.
-pub(super) fn reflections(covariance: &[f64; ORDER + 1]) -> [f64; ORDER] {
+pub(crate) fn reflections(covariance: &[f64; ORDER + 1]) -> [f64; ORDER] {
     let mut ar = [0.0; ORDER];
     let mut error = covariance[0];
     let mut found = [0.0; ORDER];
@@ -95,7 +95,7 @@ pub(super) fn reflections(covariance: &[f64; ORDER + 1]) -> [f64; ORDER] {
 }
 
 /// Autocovariance of rows with weights (0 leaves a row out) inside segments.
-pub(super) fn covariance(
+pub(crate) fn covariance(
     rows: &[f64],
     weights: &[f64],
     segments: &[Range<usize>],
@@ -122,7 +122,7 @@ pub(super) fn covariance(
 
 /// Noise whose whitened rows have variance one, from rows that are nothing but noise, `share` of
 /// whose squares was lost on the way to them.
-pub(super) fn of_rows(
+pub(crate) fn of_rows(
     rows: &[f64],
     weights: &[f64],
     segments: &[Range<usize>],

@@ -26,6 +26,7 @@ pub use motion::{Motion, check, check_torque};
 pub(crate) use regressor::contract;
 pub use regressor::decimated;
 pub use slip::dahl;
+pub(crate) use slip::slipped;
 pub(crate) use stretch::stretch;
 pub use torque::{Torque, filtered_torque};
 

@@ -32,13 +32,18 @@ pub fn dahl(qd: &[f64], rate_hz: f64, zs: f64, begin: f64) -> Vec<f64> {
     let mut state = begin;
     let step = |(i, qd): (usize, &f64)| {
         if i > 0 {
-            let kept = (-qd.abs() / (rate_hz * zs)).exp();
-            let direction = if *qd < 0.0 { -1.0 } else { 1.0 };
-            state = direction + (state - direction) * kept;
+            state = slipped(state, *qd, rate_hz, zs);
         }
         state
     };
     qd.iter().enumerate().map(step).collect()
+}
+
+/// The state of [`dahl`] one sample after `state`.
+pub(crate) fn slipped(state: f64, qd: f64, rate_hz: f64, zs: f64) -> f64 {
+    let kept = (-qd.abs() / (rate_hz * zs)).exp();
+    let direction = if qd < 0.0 { -1.0 } else { 1.0 };
+    direction + (state - direction) * kept
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use super::planar::LANES;
 use crate::settings::Derivatives;
 
 /// Weights of the differences of neighbours 1, 2, 3, 4 samples away, eighth order.
-const EIGHTH: [f64; 4] = [4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0];
+pub(crate) const EIGHTH: [f64; 4] = [4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0];
 
 /// The same of fourth order.
 const FOURTH: [f64; 2] = [2.0 / 3.0, -1.0 / 12.0];

@@ -24,7 +24,7 @@ pub use bandwidth::bandwidth;
 pub use cascade::{Cascade, Section};
 pub use decimate::Decimator;
 pub use design::{butterworth, chebyshev1};
-pub(crate) use difference::{REACH, uncertainty};
+pub(crate) use difference::{EIGHTH, REACH, uncertainty};
 pub use difference::{central_difference, derivative};
 pub(crate) use extent::{all_finite, extent, median, medians};
 pub use planar::{BLOCK, LANES, Planar, Signals};
