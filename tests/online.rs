@@ -73,7 +73,12 @@ fn batch(
 
 /// The recursion and the batch find the same parameters, to 1e-9 of each parameter or, where it is
 /// less certain than that, of its standard deviation.
-fn online_is_batch(model: &dyn IdentificationModel, kind: ModelKind, seconds: f64) {
+fn online_is_batch(
+    model: &dyn IdentificationModel,
+    kind: ModelKind,
+    seconds: f64,
+    forgetting: f64,
+) {
     let np = model.columns().len();
     let options = Options {
         model: kind,
@@ -82,55 +87,52 @@ fn online_is_batch(model: &dyn IdentificationModel, kind: ModelKind, seconds: f6
     let noise = Noise { q: 1e-6, tau: 0.2 };
     let mut moving = Moving::new(model, 1000.0, noise);
     let mut stream = Stream::new(model, &options).unwrap();
-    let weights: Vec<f64> = (0..stream.equations().len())
-        .map(|j| 1.0 + 0.3 * j as f64)
-        .collect();
-    for forgetting in [1.0, 0.999] {
-        stream.clear();
-        let mut recursion = Recursion::new(&stream, &weights, forgetting).unwrap();
-        let mut instants = Vec::new();
-        run(&mut stream, &mut moving, seconds, |instant| {
-            recursion.update(instant);
-            instants.push(instant.equations.to_vec());
-        });
-        let mut solution = recursion.solution();
-        recursion.solve(&mut solution).unwrap();
-        let (x, sigma) = batch(np, &instants, &weights, forgetting);
-        assert_eq!(solution.rank, np, "{} {kind:?}", model.name());
-        for k in 0..np {
-            let (own, whole) = (solution.value(k).unwrap(), x[k]);
-            let far = (own - whole).abs();
-            let size = whole.abs().max(sigma[k]);
-            assert!(
-                far <= 1e-9 * size,
-                "{} {kind:?} {k}: {own} {whole}",
-                model.name()
-            );
-            if forgetting == 1.0 {
-                let far = (solution.sigma[k].unwrap() - sigma[k]).abs();
-                assert!(far <= 1e-9 * sigma[k]);
-            }
+    let equations = 0..stream.equations().len();
+    let weights: Vec<f64> = equations.map(|j| 1.0 + 0.3 * j as f64).collect();
+    let mut recursion = Recursion::new(&stream, &weights, forgetting).unwrap();
+    let mut instants = Vec::new();
+    run(&mut stream, &mut moving, seconds, |instant| {
+        recursion.update(instant);
+        instants.push(instant.equations.to_vec());
+    });
+    let solution = solved(&mut recursion);
+    let (x, sigma) = batch(np, &instants, &weights, forgetting);
+    let name = format!("{} {kind:?} {forgetting}", model.name());
+    assert_eq!(solution.rank, np, "{name}");
+    let mut largest = 0.0f64;
+    for k in 0..np {
+        let (own, whole) = (solution.value(k).unwrap(), x[k]);
+        let far = (own - whole).abs() / whole.abs().max(sigma[k]);
+        assert!(far <= 1e-9, "{name} {k}: {own} {whole}");
+        largest = largest.max(far);
+        if forgetting == 1.0 {
+            let far = (solution.sigma[k].unwrap() - sigma[k]).abs();
+            assert!(far <= 1e-9 * sigma[k], "{name} {k}");
         }
     }
+    println!("{name}: {largest:.1e} apart");
 }
 
 fn panda() -> Interpreter {
-    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("robots/panda.toml");
-    Interpreter::new(&builder::read(&path).unwrap())
+    let known = |robot: &&robots::Robot| robot.name == robots::panda::NAME;
+    let texts = robots::ALL.iter().find(known).unwrap().texts;
+    Interpreter::new(&builder::read_texts(texts).unwrap())
 }
 
 #[test]
 fn scara_online_is_batch() {
     for kind in ModelKind::ALL {
-        online_is_batch(&robots::scara::Model, kind, 20.0);
+        for forgetting in [1.0, 0.999] {
+            online_is_batch(&robots::scara::Model, kind, 20.0, forgetting);
+        }
     }
 }
 
 #[test]
 fn panda_online_is_batch() {
-    online_is_batch(&panda(), ModelKind::Explicit, 20.0);
-    online_is_batch(&robots::panda::Model, ModelKind::Explicit, 20.0);
-    online_is_batch(&robots::panda::Model, ModelKind::Power, 60.0);
+    online_is_batch(&panda(), ModelKind::Explicit, 5.0, 1.0);
+    online_is_batch(&robots::panda::Model, ModelKind::Explicit, 10.0, 0.999);
+    online_is_batch(&robots::panda::Model, ModelKind::Power, 40.0, 1.0);
 }
 
 fn solved(recursion: &mut Recursion) -> Solution {
@@ -251,7 +253,9 @@ fn parameters_of_a_joint_that_has_not_moved_are_reported_not_guessed() {
         assert!(far < 6.0 * before.sigma[k].unwrap(), "{name}: {far}");
     }
     assert!(before.rank < model.columns().len());
+    // The sine does not begin where the joint stood: a gap in time.
     moving.hold = None;
+    stream.clear();
     run(&mut stream, &mut moving, 20.0, |i| recursion.update(i));
     let after = solved(&mut recursion);
     assert_eq!(after.rank, model.columns().len());
