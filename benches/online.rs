@@ -1,4 +1,4 @@
-//! The step of a control loop at 1 kHz: a 7R arm (Panda, 64 parameters), filters, recursion and
+//! The step of a control loop at 1 kHz: a 7R arm (Panda, 69 parameters), filters, recursion and
 //! watchdog, in the middle of its work. Before the usual benchmarks, the slowest of a million steps
 //! is looked for; the allocations of each are counted (none is shown where there is none).
 //!

@@ -31,6 +31,7 @@ pub struct Moving<'m> {
     pub qd: Vec<f64>,
     pub tau: Vec<f64>,
     qdd: Vec<f64>,
+    slip: Vec<f64>,
 }
 
 impl<'m> Moving<'m> {
@@ -58,6 +59,14 @@ impl<'m> Moving<'m> {
             qd: vec![0.0; joints],
             qdd: vec![0.0; joints],
             tau: vec![0.0; joints],
+            slip: vec![
+                0.0;
+                if model.presliding().is_empty() {
+                    0
+                } else {
+                    joints
+                }
+            ],
         }
     }
 
@@ -91,6 +100,7 @@ impl<'m> Moving<'m> {
             };
             [self.q[j], self.qd[j], self.qdd[j]] = state;
         }
+        self.slide();
         self.torque();
         let noise = self.noise;
         for (q, tau) in self.q.iter_mut().zip(&mut self.tau) {
@@ -100,13 +110,25 @@ impl<'m> Moving<'m> {
         (&self.q, &self.tau)
     }
 
+    /// Contacts that yield: the solution of Dahl's equation for a velocity that is constant over a
+    /// sample.
+    fn slide(&mut self) {
+        for memory in self.model.presliding() {
+            let qd = self.qd[memory.joint];
+            let end = if qd < 0.0 { -1.0 } else { 1.0 };
+            let kept = (-qd.abs() / (self.rate_hz * memory.zs)).exp();
+            let state = &mut self.slip[memory.joint];
+            *state = end + (*state - end) * kept;
+        }
+    }
+
     fn torque(&mut self) {
         let states = States {
             len: 1,
             q: &self.q,
             qd: &self.qd,
             qdd: &self.qdd,
-            slip: &[],
+            slip: &self.slip,
         };
         self.model
             .evaluate(Output::Explicit, &states, &mut self.signals);

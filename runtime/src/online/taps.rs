@@ -93,7 +93,6 @@ fn response(options: &Options) -> Result<Vec<f64>, OnlineError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::signal::central_difference;
 
     #[test]
     fn a_slow_sine_passes_with_its_derivatives() {
@@ -121,7 +120,10 @@ mod tests {
         let signal: Vec<f64> = (0..len).map(noise).collect();
         let cascade = butterworth(4, options.fq_hz, 200.0).unwrap();
         let filter = ZeroPhase::new(cascade, 4, Edges::Scipy);
-        let batch = filter.filter(&[signal.clone()]).unwrap().concat();
+        let batch = filter
+            .filter(std::slice::from_ref(&signal))
+            .unwrap()
+            .concat();
         let at = len / 2;
         let window = &signal[at - taps.lag()..=at + taps.lag()];
         let own: f64 = window.iter().zip(&taps.position).map(|(q, h)| q * h).sum();
@@ -129,7 +131,6 @@ mod tests {
         let own: f64 = window.iter().zip(&taps.velocity).map(|(q, h)| q * h).sum();
         let eighth = derivative(&batch, 200.0, Derivatives::Eighth)[at];
         assert!((own - eighth).abs() < 3e-7 * 200.0);
-        assert!(central_difference(&batch, 200.0)[at].is_finite());
     }
 
     #[test]
