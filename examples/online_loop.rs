@@ -111,6 +111,9 @@ fn words(watchdog: &mut Watchdog) -> String {
     }
 }
 
+/// What a loop reads: positions, rad, and torques, N m.
+type Sample = ([f64; 2], [f64; 2]);
+
 /// The simulated robot, its controller and its sensors.
 struct Robot {
     parameters: Vec<f64>,
@@ -146,7 +149,7 @@ impl Robot {
     }
 
     /// What the loop reads in one cycle: positions and torques, sample by sample.
-    fn cycle(&mut self) -> Result<Vec<([f64; 2], [f64; 2])>, Box<dyn Error>> {
+    fn cycle(&mut self) -> Result<Vec<Sample>, Box<dyn Error>> {
         let len = (CYCLE_S * RATE_HZ) as usize;
         let plan = ClosedLoop {
             reference: &self.reference,
@@ -172,7 +175,7 @@ impl Robot {
         Ok((0..len).map(|i| self.read(&run, i)).collect())
     }
 
-    fn read(&mut self, run: &Simulation, i: usize) -> ([f64; 2], [f64; 2]) {
+    fn read(&mut self, run: &Simulation, i: usize) -> Sample {
         let q = std::array::from_fn(|j| (run.q[j][i] / ENCODER).round() * ENCODER);
         let tau = std::array::from_fn(|j| run.tau[j][i] + NOISE[j] * normal(&mut self.random));
         (q, tau)

@@ -9,7 +9,7 @@
 //! acceleration are weighted sums over a window of samples, with the weights of the batch's
 //! zero-phase Butterworth low-pass and differences of eighth order; they belong to the middle of the
 //! window, and torque is taken from that same sample. So the equation of an instant is the batch's,
-//! some hundredths of a second late ([`Stream::lag_s`]), and has no error of phase. Columns and
+//! a fraction of a second late ([`Stream::lag_s`]), and has no error of phase. Columns and
 //! measurement of all equations then pass one causal low-pass alike (a Butterworth, forward only,
 //! from states of zero). Its output is a sum of past equations with the same weights left and right,
 //! hence an equation again, whatever its phase: \\( F[y] = F[w] X \\) holds exactly, from the first

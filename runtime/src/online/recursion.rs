@@ -70,7 +70,7 @@ impl Recursion {
         Solution::new(self.factor.width() - 1)
     }
 
-    /// The parameters as they are now. Costs as much as some hundred updates, always the same for
+    /// The parameters as they are now. Costs as much as about ten updates, always the same for
     /// a model; a loop that cannot wait solves a [`Recursion::copy`] in another thread.
     ///
     /// # Errors

@@ -119,7 +119,7 @@ impl Watchdog {
 
     /// Compares the last blocks with what was learned: the health of every equation, in the order
     /// of the joints (a single one for the power model). To be called about once per block; costs as
-    /// much as some hundred updates, in memory taken at set-up. A loop that cannot wait hands a clone
+    /// much as some tens of updates, in memory taken at set-up. A loop that cannot wait hands a clone
     /// to another thread.
     pub fn check(&mut self) -> &[Health] {
         for (watched, health) in self.watched.iter_mut().zip(&mut self.health) {
