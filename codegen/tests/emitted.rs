@@ -88,10 +88,41 @@ fn odd() -> Robot {
     builder::read_texts(&[("odd.toml", text)]).unwrap_or_else(|error| panic!("{error}"))
 }
 
+/// A loop that the crank turns through at every angle, and a joint that follows at half its speed.
+fn closed() -> Robot {
+    let text = r#"
+        name = "closed"
+        [[joint]]
+        name = "crank"
+        kind = "revolute"
+        [[joint]]
+        name = "coupler"
+        kind = "revolute"
+        d = 0.2
+        passive = true
+        [[joint]]
+        name = "tool"
+        kind = "revolute"
+        alpha = 0.7
+        d = 0.3
+        mimic = { joint = "crank", multiplier = -0.5, offset = 0.3 }
+        [[joint]]
+        name = "rocker"
+        kind = "revolute"
+        ant = 0
+        d = 0.7
+        passive = true
+        [[loop]]
+        cut = { ant = 2, d = 0.6 }
+        meets = { ant = 4, d = 0.5 }
+    "#;
+    builder::read_texts(&[("closed.toml", text)]).unwrap_or_else(|error| panic!("{error}"))
+}
+
 /// Random states, sample by sample: q, qd, qdd, slip, joint by joint, then base parameters.
 fn states(robot: &Robot) -> Vec<Vec<f64>> {
     let mut random = rand::rngs::StdRng::seed_from_u64(6);
-    let joints = robot.mechanism.joints.len();
+    let joints = robot.mechanism.driven;
     let limits = [3.0, 2.0, 5.0, 1.0];
     (0..SAMPLES)
         .map(|_| {
@@ -108,7 +139,7 @@ fn states(robot: &Robot) -> Vec<Vec<f64>> {
 
 /// All outputs of the interpreter, sample by sample, in the order of the functions, row by row.
 fn interpreted(robot: &Robot, states: &[Vec<f64>]) -> Vec<Vec<Vec<f64>>> {
-    let (n, nb) = (robot.mechanism.joints.len(), robot.base.parameters.len());
+    let (n, nb) = (robot.mechanism.driven, robot.base.parameters.len());
     let values = |values: &[Expr], state: &[f64]| {
         let mut out = vec![0.0; values.len()];
         let batch = Batch {
@@ -393,6 +424,7 @@ robots! {
     panda: built_in("panda");
     thirty_joints_with_functions: humanoid().with(&FUNCTIONS);
     every_function_and_odd_names: odd().with(&FUNCTIONS);
+    loop_and_follower_with_functions: closed().with(&FUNCTIONS);
 }
 
 #[test]
