@@ -97,7 +97,7 @@ fn state(robot: &Robot, seed: u64) -> State {
             .map(|_| random.random_range(-size..size))
             .collect()
     };
-    let n = robot.mechanism.joints.len();
+    let n = robot.mechanism.driven;
     State {
         q: draw(n, 3.0),
         qd: draw(n, 2.0),
@@ -381,5 +381,96 @@ fn inverse_dynamics_costs_less_than_the_regressor() {
             of(Quantity::Jacobian)
         );
         assert!(10 * torque < 7 * regressor, "{torque} of {regressor}");
+    }
+}
+
+/// Crank, coupler, rocker, and a tool that follows the crank: functions in the driven joint alone.
+#[test]
+fn functions_of_loops_and_followers_are_those_of_the_driven_joints() {
+    let text = r#"
+        gravity = [1.0, -9.0, -2.0]
+        effects = []
+        [[joint]]
+        name = "crank"
+        kind = "revolute"
+        [[joint]]
+        name = "coupler"
+        kind = "revolute"
+        d = 0.2
+        passive = true
+        [[joint]]
+        name = "wrist"
+        kind = "revolute"
+        alpha = 0.7
+        d = 0.3
+        [[joint]]
+        name = "tool"
+        kind = "prismatic"
+        alpha = 0.4
+        d = 0.1
+        mimic = { joint = "crank", multiplier = -0.5, offset = 0.3 }
+        [[joint]]
+        name = "rocker"
+        kind = "revolute"
+        ant = 0
+        d = 0.7
+        passive = true
+        [[loop]]
+        cut = { ant = 2, d = 0.6 }
+        meets = { ant = 5, d = 0.5 }
+    "#;
+    let robot = builder::read_texts(&[("closed.toml", text)]).unwrap();
+    let robot = robot.with(&[Group::Dynamics, Group::Kinematics]);
+    let n = robot.mechanism.driven;
+    let own = state(&robot, 3);
+    let torque = |state: &State| -> Vec<f64> {
+        let entries = robot.entries(Output::Explicit);
+        let values: Vec<Expr> = entries.iter().map(|entry| entry.value).collect();
+        let values = run(&robot, &values, state);
+        let mut torque = vec![0.0; n];
+        for (entry, value) in entries.iter().zip(values) {
+            torque[entry.row] += value * state.x[entry.column];
+        }
+        torque
+    };
+    let function = |quantity| evaluate(&robot, of(&robot, quantity)[0], &own);
+    let inverse = function(Quantity::InverseDynamics);
+    let still = State {
+        qd: vec![0.0; n],
+        qdd: vec![0.0; n],
+        ..own.clone()
+    };
+    let (gravity, matrix) = (function(Quantity::Gravity), function(Quantity::MassMatrix));
+    let near = |a: f64, b: f64| assert!((a - b).abs() < 1e-10 * b.abs().max(1.0), "{a} for {b}");
+    for joint in 0..n {
+        near(inverse[(0, joint)], torque(&own)[joint]);
+        near(gravity[(0, joint)], torque(&still)[joint]);
+        let mut pushed = still.clone();
+        pushed.qdd[joint] = 1.0;
+        for row in 0..n {
+            near(
+                matrix[(row, joint)],
+                torque(&pushed)[row] - torque(&still)[row],
+            );
+        }
+    }
+    // The Jacobian of the tool is the slope of its pose.
+    let place = |by: f64, joint: usize| {
+        let mut moved = own.clone();
+        moved.q[joint] += by;
+        let pose = of(&robot, Quantity::Pose);
+        let tool = pose.iter().find(|one| one.body.as_deref() == Some("tool"));
+        evaluate(&robot, tool.unwrap(), &moved)
+    };
+    let jacobian = of(&robot, Quantity::Jacobian);
+    let tool = jacobian
+        .iter()
+        .find(|one| one.body.as_deref() == Some("tool"));
+    let jacobian = evaluate(&robot, tool.unwrap(), &own);
+    for joint in 0..n {
+        let slope = (place(1e-5, joint) - place(-1e-5, joint)) / 2e-5;
+        for axis in 0..3 {
+            assert!((slope[(axis, 3)] - jacobian[(axis, joint)]).abs() < 1e-8);
+        }
     }
 }
