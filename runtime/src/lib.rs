@@ -17,6 +17,7 @@ pub mod log;
 pub mod model;
 pub mod observe;
 pub mod online;
+pub mod physical;
 pub mod report;
 pub mod settings;
 pub mod signal;

@@ -1,0 +1,232 @@
+//! From base parameters to bodies that exist: standard parameters of every link whose
+//! pseudo-inertia is positive definite, as near as the data allow to an estimate.
+//!
+//! The log decides np base parameters \\( X = K z \\) and nothing else of the standard parameters
+//! z. Among all z
+//!
+//! \\[ \min_z \; \tfrac12 (K z - \hat X)^T G (K z - \hat X)
+//!    + \gamma \sum_k \left( \mathrm{tr}(P_{0k}^{-1} P_k) - \log\det(P_{0k}^{-1} P_k) - 4 \right)
+//!    + \gamma \sum_j \left( s_j / s_{0j} - \log(s_j / s_{0j}) - 1 \right) \\]
+//!
+//! is taken: G is the inverse covariance of the estimate, so that the data weigh in their own
+//! metric, P_k the 4 x 4 pseudo-inertia of link k and P_0k the described one, to which the
+//! Bregman divergence of log det leads where the data are silent (Lee, Wensing, Park, "Geometric
+//! robot dynamic identification: a convex programming approach", IEEE Transactions on Robotics 36,
+//! 2020; Wensing, Kim, Slotine, "Linear matrix inequalities for physically consistent inertial
+//! parameter identification", IEEE RA-L 3, 2018). It grows without bound where a P_k ceases to be
+//! positive definite, and s_j are the parameters that cannot be negative: rotor inertias and
+//! friction. The problem is convex and self-concordant; [`newton`] solves it without a semidefinite
+//! solver.
+
+mod bodies;
+mod newton;
+mod pseudo;
+
+pub use pseudo::{Prior, Pseudo};
+
+/// A parameter that is no inertial parameter of a link.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Scalar {
+    /// One that is positive, with the value it has where the data are silent.
+    Positive(f64),
+    /// One of either sign, zero where the data are silent.
+    Free,
+}
+
+/// A combination of standard parameters that is known beside the log.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Known {
+    /// What is known, in words, for messages: `mass of link 3`.
+    pub what: String,
+    /// Factors of the unknowns: place and factor.
+    pub factors: Vec<(usize, f64)>,
+    /// Value, SI.
+    pub value: f64,
+    /// Standard deviation, SI.
+    pub sigma: f64,
+}
+
+/// What is to be solved. The unknowns z are ten values of each link in the order of
+/// [`crate::knowledge::STANDARD`], then the scalars.
+#[derive(Clone, Debug)]
+pub struct Problem {
+    /// Described bodies, one per link.
+    pub links: Vec<Prior>,
+    /// Rotor inertias, friction and all else.
+    pub scalars: Vec<Scalar>,
+    /// K by rows: np lists of (unknown, factor).
+    pub map: Vec<Vec<(usize, f64)>>,
+    /// The np estimated base parameters, SI.
+    pub estimate: Vec<f64>,
+    /// Their inverse covariance, np x np, row-major, positive semidefinite.
+    pub precision: Vec<f64>,
+    /// What is known beside.
+    pub known: Vec<Known>,
+    /// \\( \gamma \\): what the description counts for, in standard deviations of the data
+    /// squared; 1 takes it for known to about its own size.
+    pub weight: f64,
+}
+
+/// Bodies that exist.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Bodies {
+    /// The ten standard parameters of each link, SI.
+    pub links: Vec<[f64; 10]>,
+    /// The scalars.
+    pub scalars: Vec<f64>,
+    /// The np base parameters of these bodies.
+    pub parameters: Vec<f64>,
+    /// \\( (X - \hat X)^T G (X - \hat X) \\): how far they are from the estimate, in standard
+    /// deviations squared.
+    pub distance: f64,
+    /// Newton steps taken.
+    pub steps: usize,
+}
+
+/// Why there are no such bodies.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum PhysicalError {
+    /// A length that does not fit.
+    #[error("{what}: {has} values, {needs} are needed")]
+    Length {
+        /// Of what.
+        what: &'static str,
+        /// How many there are.
+        has: usize,
+        /// How many there should be.
+        needs: usize,
+    },
+    /// A number that is not one, or out of its range.
+    #[error("{what} is {value}; it must be {must}")]
+    Value {
+        /// Of what.
+        what: String,
+        /// What it is.
+        value: f64,
+        /// What it may be.
+        must: &'static str,
+    },
+    /// Something stated that no bodies with these base parameters have.
+    #[error(
+        "the {what} cannot be {wanted:.6} kg: bodies that exist and have the identified parameters \
+         come to {nearest:.6} kg at the nearest; leave it out, or check it and the log"
+    )]
+    Infeasible {
+        /// What was stated.
+        what: String,
+        /// Its value.
+        wanted: f64,
+        /// The nearest value there is.
+        nearest: f64,
+    },
+    /// Newton's method came to no end.
+    #[error(
+        "no bodies were found after {steps} steps: the precision of the estimate is no covariance"
+    )]
+    NoEnd {
+        /// Steps taken.
+        steps: usize,
+    },
+}
+
+/// Stated values that are missed by more standard deviations than this cannot be.
+const MISSED: f64 = 4.0;
+
+impl Problem {
+    /// Solves it.
+    ///
+    /// # Errors
+    /// [`PhysicalError`].
+    pub fn solve(&self) -> Result<Bodies, PhysicalError> {
+        self.check()?;
+        let (unknowns, steps) = newton::minimum(self)?;
+        for known in &self.known {
+            let reached: f64 = known.factors.iter().map(|(k, f)| f * unknowns[*k]).sum();
+            if (reached - known.value).abs() > MISSED * known.sigma {
+                return Err(PhysicalError::Infeasible {
+                    what: known.what.clone(),
+                    wanted: known.value,
+                    nearest: reached,
+                });
+            }
+        }
+        let parameters = self.parameters(&unknowns);
+        let distance = 2.0 * self.misfit(&parameters);
+        let (links, scalars) = unknowns.split_at(10 * self.links.len());
+        Ok(Bodies {
+            links: links
+                .chunks_exact(10)
+                .map(|link| std::array::from_fn(|i| link[i]))
+                .collect(),
+            scalars: scalars.to_vec(),
+            parameters,
+            distance,
+            steps,
+        })
+    }
+
+    /// Number of unknowns.
+    fn unknowns(&self) -> usize {
+        10 * self.links.len() + self.scalars.len()
+    }
+
+    /// K z.
+    fn parameters(&self, unknowns: &[f64]) -> Vec<f64> {
+        let row = |row: &Vec<(usize, f64)>| row.iter().map(|(k, f)| f * unknowns[*k]).sum();
+        self.map.iter().map(row).collect()
+    }
+
+    /// Half the squared distance from the estimate.
+    fn misfit(&self, parameters: &[f64]) -> f64 {
+        let away: Vec<f64> = parameters
+            .iter()
+            .zip(&self.estimate)
+            .map(|(a, b)| a - b)
+            .collect();
+        let rows = self.precision.chunks_exact(away.len());
+        let pull = rows.map(|row| row.iter().zip(&away).map(|(g, a)| g * a).sum::<f64>());
+        0.5 * pull.zip(&away).map(|(pull, away)| pull * away).sum::<f64>()
+    }
+
+    fn check(&self) -> Result<(), PhysicalError> {
+        let np = self.estimate.len();
+        let lengths = [
+            ("K", self.map.len(), np),
+            ("the precision", self.precision.len(), np * np),
+        ];
+        for (what, has, needs) in lengths {
+            if has != needs {
+                return Err(PhysicalError::Length { what, has, needs });
+            }
+        }
+        let wrong = |what: &str, value: f64, must| PhysicalError::Value {
+            what: what.to_owned(),
+            value,
+            must,
+        };
+        let numbers = self.estimate.iter().chain(&self.precision);
+        if let Some(value) = numbers.copied().find(|x| !x.is_finite()) {
+            return Err(wrong("an estimate or its precision", value, "finite"));
+        }
+        if !(self.weight > 0.0 && self.weight.is_finite()) {
+            return Err(wrong(
+                "the weight of the description",
+                self.weight,
+                "positive",
+            ));
+        }
+        for known in &self.known {
+            if !(known.value > 0.0 && known.value.is_finite()) {
+                return Err(wrong(
+                    &format!("the {}", known.what),
+                    known.value,
+                    "positive",
+                ));
+            }
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests;
