@@ -15,6 +15,7 @@ mod observed;
 mod options;
 mod other_columns;
 mod payload;
+mod precision;
 mod predict;
 mod prior;
 mod score;
@@ -92,6 +93,9 @@ pub fn identify<L: Samples>(
             &together.resting,
         ));
         let mut found = result(model, kind, &estimate, &together, &checked)?;
+        if kind == ModelKind::Explicit {
+            found.precision = precision::precision(&together.of(kind)?.evidence, &estimate);
+        }
         let sigmas = corrected::corrected(model, &together.of(kind)?.evidence, plan.weights);
         for (parameter, sigma) in found.parameters.iter_mut().zip(sigmas) {
             parameter.sigma_corrected = sigma.filter(|_| parameter.value.is_some());
@@ -194,6 +198,7 @@ fn result(
             .collect(),
         fit: score::torque(model, &train.torque(kind)?.evidence, x),
         validation,
+        precision: Vec::new(),
         with_prior: None,
         instrumented: None,
     })

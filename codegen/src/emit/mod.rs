@@ -20,6 +20,7 @@ pub mod signature;
 pub mod statement;
 pub mod summary;
 mod text;
+pub mod urdf;
 
 pub use c::{c, c_in_one};
 pub use language::Language;

@@ -88,6 +88,11 @@ pub struct ModelResult {
     pub fit: Fit,
     /// Torque error on each validation log.
     pub validation: Vec<Validation>,
+    /// Inverse covariance of the parameters for independent errors, in the units of the
+    /// parameters: its lower triangle by rows, of the explicit model. `idim export` finds bodies in
+    /// its metric.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub precision: Vec<Vec<f64>>,
     /// What the log and the description's tolerances say together, beside the classical estimate.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub with_prior: Option<WithPrior>,
