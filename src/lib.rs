@@ -10,6 +10,7 @@ pub use idim_runtime as runtime;
 
 pub mod catalogue;
 pub mod demo;
+pub mod exported;
 pub mod interpreted;
 pub mod simulated;
 pub mod study;

@@ -1,0 +1,220 @@
+//! The standard parameters behind the base parameters, and where each begins.
+
+use idim_codegen::Robot;
+use idim_codegen::mechanism::inertia::NAMES;
+use idim_codegen::mechanism::{Joint, Mechanism};
+use idim_runtime::physical::{Known, Prior, Problem, Pseudo, Scalar};
+
+use super::{ExportError, Identified, Options, share};
+
+/// Standard deviation of a mass that is stated, as a share of it.
+const STATED: f64 = 1e-4;
+
+/// Where a positive parameter begins that is neither described nor identified by itself, in its
+/// unit.
+const SMALL: f64 = 0.1;
+
+/// A guessed link: mass per length, kg/m, radius of gyration as a share of its length, and the
+/// shortest length taken, m.
+const SLENDER: f64 = 15.0;
+const ROUND: f64 = 0.25;
+const SHORT: f64 = 0.1;
+
+/// A parameter beside the inertial ones.
+pub(super) struct Named {
+    pub name: String,
+    scalar: Scalar,
+}
+
+/// All unknowns.
+pub(super) struct Unknowns {
+    links: Vec<Prior>,
+    pub scalars: Vec<Named>,
+    known: Vec<Known>,
+    pub warnings: Vec<String>,
+}
+
+impl Unknowns {
+    /// Links from the bodies of the `carrier`, all else from the relations of the robot.
+    pub fn of(
+        robot: &Robot,
+        carrier: &Mechanism,
+        options: &Options,
+    ) -> Result<Unknowns, ExportError> {
+        let mut warnings = Vec::new();
+        let links = links(carrier, options.fill, &mut warnings)?;
+        Ok(Unknowns {
+            scalars: scalars(robot),
+            known: known(carrier, options)?,
+            links,
+            warnings,
+        })
+    }
+
+    /// The problem to solve.
+    pub fn problem(
+        &self,
+        robot: &Robot,
+        identified: &Identified,
+        options: &Options,
+    ) -> Result<Problem, ExportError> {
+        let place = |name: &str| {
+            inertial(name).unwrap_or_else(|| {
+                let scalar = self.scalars.iter().position(|scalar| scalar.name == name);
+                10 * self.links.len() + scalar.unwrap_or(0)
+            })
+        };
+        let parameters = robot.base.parameters.iter();
+        let map: Vec<Vec<(usize, f64)>> = parameters
+            .map(|parameter| {
+                let terms = parameter.relation.iter();
+                terms.map(|(factor, name)| (place(name), *factor)).collect()
+            })
+            .collect();
+        // A positive parameter that is a base parameter by itself begins where it was found.
+        let mut scalars: Vec<Scalar> = self.scalars.iter().map(|s| s.scalar.clone()).collect();
+        let first = 10 * self.links.len();
+        for (row, value) in map.iter().zip(&identified.parameters) {
+            if let [(at, factor)] = row[..]
+                && let Some(Scalar::Positive(start)) = scalars.get_mut(at.wrapping_sub(first))
+                && value / factor > 0.0
+            {
+                *start = value / factor;
+            }
+        }
+        Ok(Problem {
+            links: self.links.clone(),
+            scalars,
+            map,
+            estimate: identified.parameters.clone(),
+            precision: identified.precision.clone(),
+            known: self.known.clone(),
+            weight: options.weight,
+        })
+    }
+}
+
+/// Place of an inertial parameter such as `XX3` among the unknowns.
+fn inertial(name: &str) -> Option<usize> {
+    let symbol = name.trim_end_matches(|c: char| c.is_ascii_digit());
+    let place = NAMES.iter().position(|known| *known == symbol)?;
+    let number: usize = name[symbol.len()..].parse().ok()?;
+    Some(10 * number.checked_sub(1)? + place)
+}
+
+/// What stands in the relations beside inertial parameters, each once.
+fn scalars(robot: &Robot) -> Vec<Named> {
+    let mut named: Vec<Named> = Vec::new();
+    let relations = robot.base.parameters.iter().flat_map(|p| &p.relation);
+    for (_, name) in relations {
+        if inertial(name).is_some() || named.iter().any(|known| known.name == *name) {
+            continue;
+        }
+        let stated = robot.description.parameters.iter();
+        let stated = stated
+            .clone()
+            .find(|(stated, value)| stated == name && *value > 0.0);
+        let symbol = name.trim_end_matches(|c: char| c.is_ascii_digit());
+        let scalar = match symbol {
+            "IA" | "FV" | "FS" => Scalar::Positive(stated.map_or(SMALL, |(_, value)| *value)),
+            _ => Scalar::Free,
+        };
+        named.push(Named {
+            name: name.clone(),
+            scalar,
+        });
+    }
+    named
+}
+
+fn links(
+    mechanism: &Mechanism,
+    fill: bool,
+    warnings: &mut Vec<String>,
+) -> Result<Vec<Prior>, ExportError> {
+    let mut links = Vec::with_capacity(mechanism.joints.len());
+    let mut missing = Vec::new();
+    for (index, joint) in mechanism.joints.iter().enumerate() {
+        let described = Prior::of(&share::together(joint).values());
+        match described {
+            Some(prior) => {
+                if prior.mended {
+                    warnings.push(format!(
+                        "What moves with `{}` is described as no body or as one that is too thin; \
+                         where the log is silent, it is taken for the nearest one that exists.",
+                        joint.name
+                    ));
+                }
+                links.push(prior);
+            }
+            None => {
+                missing.push(format!("`{}`", joint.name));
+                links.push(Prior {
+                    pseudo: guess(mechanism, index),
+                    mended: false,
+                });
+            }
+        }
+    }
+    match (missing.is_empty(), fill) {
+        (true, _) => {}
+        (false, true) => warnings.push(format!(
+            "No inertia is described for what moves with {}: where the log is silent, it is a \
+             guess from the distance to the next joint.",
+            missing.join(", ")
+        )),
+        (false, false) => return Err(ExportError::NoInertia(missing)),
+    }
+    Ok(links)
+}
+
+/// A ball half-way to the next joint.
+fn guess(mechanism: &Mechanism, link: usize) -> Pseudo {
+    let next = mechanism
+        .joints
+        .iter()
+        .find(|joint| joint.parent == Some(link));
+    let to = next.map_or([0.0; 3], |joint| joint.position);
+    let length = to.iter().map(|x| x * x).sum::<f64>().sqrt().max(SHORT);
+    Pseudo::ball(SLENDER * length, ROUND * length, to.map(|x| 0.5 * x))
+}
+
+/// Masses that are stated.
+fn known(mechanism: &Mechanism, options: &Options) -> Result<Vec<Known>, ExportError> {
+    let mass = |link: usize| 10 * link + 9;
+    let stated = |what: String, factors: Vec<(usize, f64)>, value: f64| Known {
+        what,
+        factors,
+        sigma: STATED * value.abs(),
+        value,
+    };
+    let mut known = Vec::new();
+    if let Some(total) = options.total_mass {
+        let all = (0..mechanism.joints.len()).map(|link| (mass(link), 1.0));
+        known.push(stated(
+            "mass of all that moves".into(),
+            all.collect(),
+            total,
+        ));
+    }
+    let is = |joint: &Joint, name: &str| {
+        joint.name == name || joint.bodies.iter().any(|body| body.name == name)
+    };
+    for (name, value) in &options.masses {
+        let link = mechanism.joints.iter().position(|joint| is(joint, name));
+        let link = link.ok_or_else(|| ExportError::UnknownLink {
+            name: name.clone(),
+            known: mechanism
+                .joints
+                .iter()
+                .map(|joint| joint.name.clone())
+                .collect(),
+        })?;
+        known.push(stated(
+            format!("mass of `{name}`"),
+            vec![(mass(link), 1.0)],
+            *value,
+        ));
+    }
+    Ok(known)
+}
