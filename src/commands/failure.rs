@@ -37,6 +37,9 @@ pub enum Failure {
     /// A simulation that is not possible.
     #[error(transparent)]
     Simulate(#[from] idim::runtime::simulate::SimulateError),
+    /// An export that is not possible.
+    #[error(transparent)]
+    Export(#[from] idim::exported::ExportError),
     /// A file of parameters that cannot be used.
     #[error("{path}: {message}")]
     Parameters {

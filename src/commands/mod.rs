@@ -5,6 +5,7 @@
 mod demo;
 mod describe;
 mod diagnose;
+mod export;
 mod failure;
 mod fits;
 mod gains;
@@ -39,6 +40,8 @@ enum Command {
     Describe(describe::Arguments),
     /// The effect that a robot's model lacks, found in its logs, and the gap that it closes.
     Diagnose(Box<diagnose::Arguments>),
+    /// Identified, physically consistent inertias in a URDF.
+    Export(export::Arguments),
     /// The specialised code of a robot.
     Generate(generate::Arguments),
     /// Parameters of a robot from measured logs, with statistics and validation.
@@ -53,6 +56,7 @@ pub fn run(arguments: Arguments) -> ExitCode {
         Command::Demo(arguments) => demo::run(&arguments),
         Command::Describe(arguments) => describe::run(&arguments),
         Command::Diagnose(arguments) => diagnose::run(&arguments),
+        Command::Export(arguments) => export::run(&arguments),
         Command::Generate(arguments) => generate::run(&arguments),
         Command::Identify(arguments) => identify::run(&arguments),
         Command::Simulate(arguments) => simulate::run(&arguments),
