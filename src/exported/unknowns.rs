@@ -102,25 +102,42 @@ fn inertial(name: &str) -> Option<usize> {
     Some(10 * number.checked_sub(1)? + place)
 }
 
-/// What stands in the relations beside inertial parameters, each once.
+/// What stands in the relations beside inertial parameters, each once. Rotor inertias are
+/// positive, and friction where it is viscous and Coulomb alone: beside other terms of friction,
+/// neither is a friction by itself.
 fn scalars(robot: &Robot) -> Vec<Named> {
-    let mut named: Vec<Named> = Vec::new();
     let relations = robot.base.parameters.iter().flat_map(|p| &p.relation);
+    let mut names: Vec<&String> = Vec::new();
     for (_, name) in relations {
-        if inertial(name).is_some() || named.iter().any(|known| known.name == *name) {
-            continue;
+        if inertial(name).is_none() && !names.contains(&name) {
+            names.push(name);
         }
-        let stated = robot.description.parameters.iter();
-        let stated = stated
-            .clone()
-            .find(|(stated, value)| stated == name && *value > 0.0);
-        let symbol = name.trim_end_matches(|c: char| c.is_ascii_digit());
-        let scalar = match symbol {
-            "IA" | "FV" | "FS" => Scalar::Positive(stated.map_or(SMALL, |(_, value)| *value)),
-            _ => Scalar::Free,
+    }
+    let symbol = |name: &str| {
+        name.trim_end_matches(|c: char| c.is_ascii_digit())
+            .to_owned()
+    };
+    let plain = |number: &str| {
+        let mut own = names
+            .iter()
+            .filter(|name| name[symbol(name).len()..] == *number);
+        own.all(|name| !name.starts_with('F') || ["FV", "FS"].contains(&symbol(name).as_str()))
+    };
+    let mut named: Vec<Named> = Vec::new();
+    for name in &names {
+        let mut stated = robot.description.parameters.iter();
+        let stated = stated.find(|(stated, value)| stated == *name && *value > 0.0);
+        let positive = match symbol(name).as_str() {
+            "IA" => true,
+            "FV" | "FS" => plain(&name[symbol(name).len()..]),
+            _ => false,
+        };
+        let scalar = match positive {
+            true => Scalar::Positive(stated.map_or(SMALL, |(_, value)| *value)),
+            false => Scalar::Free,
         };
         named.push(Named {
-            name: name.clone(),
+            name: (*name).clone(),
             scalar,
         });
     }

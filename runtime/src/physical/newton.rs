@@ -7,8 +7,8 @@ use super::bodies::{divergence, value};
 use super::pseudo::Square;
 use super::{PhysicalError, Problem, Scalar};
 
-/// The description counts so much at first, and a tenth of that in every round.
-const FIRST: f64 = 1e6;
+/// At first the description counts as much as the data speak against it, and a tenth of that in
+/// every further round: each begins where Newton's method converges fast.
 const FALL: f64 = 0.1;
 
 /// Steps of one round, and half the squared Newton decrement at which it ends, as a share of the
@@ -25,7 +25,8 @@ pub(super) fn minimum(problem: &Problem) -> Result<(Vec<f64>, usize), PhysicalEr
     let solver = Solver::new(problem)?;
     let mut at = solver.start();
     let mut steps = 0;
-    let mut weight = FIRST.max(problem.weight);
+    let against = problem.misfit(&problem.parameters(&at));
+    let mut weight = against.max(problem.weight);
     loop {
         steps += solver.round(&mut at, weight)?;
         if weight <= problem.weight {
