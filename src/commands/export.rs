@@ -5,7 +5,7 @@ mod show;
 
 use std::path::PathBuf;
 
-use idim::exported::{self, Exported, Identified, Options};
+use idim::exported::{self, Exported, Options};
 use idim::interpreted::Interpreter;
 use serde::Serialize;
 
@@ -119,11 +119,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         // A new URDF has no description to begin with.
         fill: arguments.fill || arguments.urdf.is_none(),
     };
-    let known = Identified {
-        parameters: found.values.clone(),
-        precision: found.precision.clone(),
-    };
-    let exported = exported::export(&robot, text.transpose()?.as_deref(), &known, &options)?;
+    let exported = exported::export(
+        &robot,
+        text.transpose()?.as_deref(),
+        &found.identified,
+        &options,
+    )?;
     let report = report(&robot, &found, &exported);
     match &arguments.output {
         Some(path) => output::write_whole(path, &exported.urdf)?,
@@ -162,7 +163,7 @@ fn report(robot: &idim::codegen::Robot, found: &identified::Found, exported: &Ex
             .map(|(k, parameter)| Parameter {
                 name: parameter.name.clone(),
                 unit: parameter.unit.clone(),
-                identified: found.values[k],
+                identified: found.identified.parameters[k],
                 sigma: found.sigma[k],
                 exported: exported.bodies.parameters[k],
             })

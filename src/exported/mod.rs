@@ -4,6 +4,7 @@
 //! link -> [`physical`](idim_runtime::physical) bodies -> [`share`]d among the described bodies that
 //! move together -> the URDF, which is read again and compared before anyone gets it.
 
+mod metric;
 mod share;
 mod unknowns;
 

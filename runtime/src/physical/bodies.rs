@@ -1,81 +1,100 @@
-//! The divergence of bodies from described ones, with its first and second derivatives.
+//! The divergence of bodies from described ones, and bodies moved in coordinates of their own.
 
 use super::pseudo::{Pseudo, Square};
 
-/// Places of the ten values in the pseudo-inertia: how each entry changes with value `i`, as
-/// (row, column, factor) of the symmetric matrix.
-fn basis(i: usize) -> Vec<(usize, usize, f64)> {
-    let diagonal = |own: usize| -> Vec<(usize, usize, f64)> {
-        (0..3)
-            .map(|k| (k, k, if k == own { -0.5 } else { 0.5 }))
-            .collect()
-    };
-    let pair = |a: usize, b: usize, factor: f64| vec![(a, b, factor), (b, a, factor)];
-    match i {
-        0 => diagonal(0),
-        1 => pair(0, 1, -1.0),
-        2 => pair(0, 2, -1.0),
-        3 => diagonal(1),
-        4 => pair(1, 2, -1.0),
-        5 => diagonal(2),
-        6..=8 => pair(i - 6, 3, 1.0),
-        _ => vec![(3, 3, 1.0)],
-    }
-}
+/// A described body as the divergence needs it: the inverse of P_0 and log det P_0.
+pub(super) type Described = (Square, f64);
 
-/// Gradient and Hessian by the ten values.
-pub(super) struct Divergence {
+/// Coordinates in which a body is the unit: with \\( P = L L^T \\), \\( P + dP = L (1 + S) L^T \\) for
+/// symmetric S, whose ten orthonormal coordinates are those of a diagonal entry or of a pair.
+/// There the second derivative of -log det is the identity, however thin the body is.
+pub(super) struct Local {
+    root: Square,
+    /// What one unit of each coordinate adds to the ten values.
+    pub values: [[f64; 10]; 10],
+    /// The gradient of the divergence.
     pub gradient: [f64; 10],
-    pub hessian: [[f64; 10]; 10],
 }
 
-/// \\( \mathrm{tr}(P_0^{-1} P) - \log\det(P_0^{-1} P) - 4 \\); `None` where the values are no body.
-pub(super) fn value(values: &[f64; 10], described: &(Square, f64)) -> Option<f64> {
-    let (_, log_det) = Pseudo::of(values).inverse()?;
+/// Rows and columns of the ten coordinates.
+const PLACES: [(usize, usize); 10] = [
+    (0, 0),
+    (0, 1),
+    (0, 2),
+    (0, 3),
+    (1, 1),
+    (1, 2),
+    (1, 3),
+    (2, 2),
+    (2, 3),
+    (3, 3),
+];
+
+/// \\( \mathrm{tr}(P_0^{-1} P) - \log\det(P_0^{-1} P) - 4 \\); `None` where P is no body.
+pub(super) fn divergence(pseudo: &Pseudo, described: &Described) -> Option<f64> {
+    let root = pseudo.cholesky()?;
+    let log_det = 2.0 * (0..4).map(|i| root[i][i].ln()).sum::<f64>();
     let (inverse, log_det_described) = described;
-    // Both are inverses' partners: log det of P_0 is minus that of its inverse.
-    Some(trace(inverse, &Pseudo::of(values).0) - (log_det - log_det_described) - 4.0)
+    Some(trace(inverse, &pseudo.0) - (log_det - log_det_described) - 4.0)
 }
 
-/// Its derivatives. `described` is the inverse of P_0 and the logarithm of its
-/// determinant.
-pub(super) fn divergence(values: &[f64; 10], described: &(Square, f64)) -> Option<Divergence> {
-    let pseudo = Pseudo::of(values);
-    let (inverse, _) = pseudo.inverse()?;
-    let bases: Vec<Vec<(usize, usize, f64)>> = (0..10).map(basis).collect();
-    let along = |matrix: &Square, basis: &[(usize, usize, f64)]| -> f64 {
-        basis.iter().map(|(r, c, f)| f * matrix[*r][*c]).sum()
-    };
-    // P^-1 E_i P^-1, and its trace with E_k.
-    let turned = |basis: &[(usize, usize, f64)]| -> Square {
-        std::array::from_fn(|a| {
-            std::array::from_fn(|b| {
-                let terms = basis
-                    .iter()
-                    .map(|(r, c, f)| f * inverse[a][*r] * inverse[*c][b]);
-                terms.sum()
-            })
+impl Local {
+    /// Around a body; `None` if it is none.
+    pub fn of(pseudo: &Pseudo, described: &Described) -> Option<Local> {
+        let root = pseudo.cholesky()?;
+        let moved = PLACES.map(|place| stretched(&root, &unit(place)));
+        Some(Local {
+            values: moved.map(|moved| Pseudo(moved).values()),
+            gradient: std::array::from_fn(|i| {
+                let (a, b) = PLACES[i];
+                let own = if a == b { 1.0 } else { 0.0 };
+                trace(&described.0, &moved[i]) - own
+            }),
+            root,
         })
-    };
-    let mut hessian = [[0.0; 10]; 10];
-    for (row, basis) in hessian.iter_mut().zip(&bases) {
-        let turned = turned(basis);
-        for (entry, other) in row.iter_mut().zip(&bases) {
-            *entry = along(&turned, other);
-        }
     }
-    Some(Divergence {
-        gradient: std::array::from_fn(|i| {
-            along(&described.0, &bases[i]) - along(&inverse, &bases[i])
-        }),
-        hessian,
+
+    /// The body at these coordinates.
+    pub fn at(&self, coordinates: &[f64]) -> Pseudo {
+        let mut inside = [[0.0; 4]; 4];
+        for (i, row) in inside.iter_mut().enumerate() {
+            row[i] = 1.0;
+        }
+        for (place, x) in PLACES.iter().zip(coordinates) {
+            let unit = unit(*place);
+            for (row, unit) in inside.iter_mut().zip(unit) {
+                row.iter_mut().zip(unit).for_each(|(s, u)| *s += x * u);
+            }
+        }
+        Pseudo(stretched(&self.root, &inside))
+    }
+}
+
+/// A symmetric matrix of norm one.
+fn unit((a, b): (usize, usize)) -> Square {
+    let mut unit = [[0.0; 4]; 4];
+    let size = if a == b { 1.0 } else { 0.5_f64.sqrt() };
+    unit[a][b] = size;
+    unit[b][a] = size;
+    unit
+}
+
+/// L S L^T.
+fn stretched(root: &Square, inside: &Square) -> Square {
+    let half: Square = std::array::from_fn(|i| {
+        std::array::from_fn(|k| (0..=i).map(|j| root[i][j] * inside[j][k]).sum())
+    });
+    std::array::from_fn(|i| {
+        std::array::from_fn(|k| {
+            let (i, k) = (i.max(k), i.min(k));
+            (0..=k).map(|j| half[i][j] * root[k][j]).sum()
+        })
     })
 }
 
 fn trace(a: &Square, b: &Square) -> f64 {
-    (0..4)
-        .map(|i| (0..4).map(|k| a[i][k] * b[k][i]).sum::<f64>())
-        .sum()
+    let row = |i: usize| (0..4).map(|k| a[i][k] * b[k][i]).sum::<f64>();
+    (0..4).map(row).sum()
 }
 
 #[cfg(test)]
@@ -83,34 +102,43 @@ mod tests {
     use super::*;
 
     #[test]
-    fn derivatives_are_those_of_the_value_and_vanish_at_the_description() {
-        let described = Pseudo::ball(2.0, 0.1, [0.1, 0.0, 0.3]);
-        let inverse = described.inverse().unwrap();
-        let at = divergence(&described.values(), &inverse).unwrap();
-        let own = value(&described.values(), &inverse).unwrap();
-        assert!(own.abs() < 1e-12);
-        assert!(at.gradient.iter().all(|g| g.abs() < 1e-9));
-
-        let values = Pseudo::ball(1.7, 0.12, [0.12, 0.01, 0.28]).values();
-        let at = divergence(&values, &inverse).unwrap();
-        assert!(value(&values, &inverse).unwrap() > 0.0);
+    fn gradient_is_that_of_the_divergence_and_its_curvature_is_one() {
+        let described = Pseudo::ball(2.0, 0.1, [0.1, 0.0, 0.3]).inverse().unwrap();
+        let pseudo = Pseudo::ball(1.7, 0.003, [0.12, 0.01, 0.28]);
+        let local = Local::of(&pseudo, &described).unwrap();
+        let value = |i: usize, by: f64| {
+            let mut at = [0.0; 10];
+            at[i] = by;
+            divergence(&local.at(&at), &described).unwrap()
+        };
+        let here = divergence(&pseudo, &described).unwrap();
         for i in 0..10 {
-            let step = 1e-6;
-            let moved = |by: f64| {
-                let mut values = values;
-                values[i] += by;
-                values
-            };
-            let (up, down) = (moved(step), moved(-step));
-            let slope =
-                (value(&up, &inverse).unwrap() - value(&down, &inverse).unwrap()) / (2.0 * step);
-            assert!((slope - at.gradient[i]).abs() < 1e-6 * (1.0 + slope.abs()));
-            let (up, down) = (divergence(&up, &inverse), divergence(&down, &inverse));
-            let (up, down) = (up.unwrap().gradient, down.unwrap().gradient);
-            for k in 0..10 {
-                let curve = (up[k] - down[k]) / (2.0 * step);
-                assert!((curve - at.hessian[i][k]).abs() < 1e-5 * (1.0 + curve.abs()));
+            let step = 1e-4;
+            let (up, down) = (value(i, step), value(i, -step));
+            let slope = (up - down) / (2.0 * step);
+            assert!((slope - local.gradient[i]).abs() < 1e-6 * (1.0 + slope.abs()));
+            // A wider step: the differences of second order are small against the value.
+            let wide = 3e-3;
+            let curve = (value(i, wide) + value(i, -wide) - 2.0 * here) / (wide * wide);
+            assert!((curve - 1.0).abs() < 1e-4, "{curve}");
+            let values = local.at(&std::array::from_fn::<f64, 10, _>(|k| {
+                f64::from(u8::from(i == k)) * step
+            }));
+            for (k, (a, b)) in values.values().iter().zip(pseudo.values()).enumerate() {
+                assert!((a - b - step * local.values[i][k]).abs() < 1e-14);
             }
         }
+    }
+
+    #[test]
+    fn divergence_vanishes_at_the_description_alone() {
+        let described = Pseudo::ball(2.0, 0.1, [0.1, 0.0, 0.3]);
+        let inverse = described.inverse().unwrap();
+        assert!(divergence(&described, &inverse).unwrap().abs() < 1e-12);
+        let gradient = Local::of(&described, &inverse).unwrap().gradient;
+        assert!(gradient.iter().all(|g| g.abs() < 1e-9));
+        assert!(divergence(&Pseudo::ball(2.1, 0.1, [0.1, 0.0, 0.3]), &inverse).unwrap() > 1e-3);
+        let none = Pseudo::of(&[0.5, 0.0, 0.0, 0.2, 0.0, 0.2, 0.0, 0.0, 0.0, 1.0]);
+        assert_eq!(divergence(&none, &inverse), None);
     }
 }

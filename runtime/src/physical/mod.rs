@@ -139,7 +139,8 @@ impl Problem {
     /// [`PhysicalError`].
     pub fn solve(&self) -> Result<Bodies, PhysicalError> {
         self.check()?;
-        let (unknowns, steps) = newton::minimum(self)?;
+        let (point, steps) = newton::minimum(self)?;
+        let unknowns = point.unknowns();
         for known in &self.known {
             let reached: f64 = known.factors.iter().map(|(k, f)| f * unknowns[*k]).sum();
             if (reached - known.value).abs() > MISSED * known.sigma {
@@ -152,13 +153,9 @@ impl Problem {
         }
         let parameters = self.parameters(&unknowns);
         let distance = 2.0 * self.misfit(&parameters);
-        let (links, scalars) = unknowns.split_at(10 * self.links.len());
         Ok(Bodies {
-            links: links
-                .chunks_exact(10)
-                .map(|link| std::array::from_fn(|i| link[i]))
-                .collect(),
-            scalars: scalars.to_vec(),
+            links: point.links.iter().map(Pseudo::values).collect(),
+            scalars: point.scalars,
             parameters,
             distance,
             steps,

@@ -3,8 +3,8 @@
 use faer::prelude::Solve;
 use faer::{Mat, Side};
 
-use super::bodies::{divergence, value};
-use super::pseudo::Square;
+use super::bodies::{Described, Local, divergence};
+use super::pseudo::Pseudo;
 use super::{PhysicalError, Problem, Scalar};
 
 /// At first the description counts as much as the data speak against it, and a tenth of that in
@@ -13,19 +13,37 @@ const FALL: f64 = 0.1;
 
 /// Steps of one round, and half the squared Newton decrement at which it ends, as a share of the
 /// weight: the method converges quadratically there.
-const STEPS: usize = 100;
+const STEPS: usize = 200;
 const ENOUGH: f64 = 1e-12;
 
 /// What free scalars are held to zero with, per unit squared, as a share of the weight; far below
 /// what any log says of them.
 const HELD: f64 = 1e-8;
 
-/// The unknowns at the minimum, and the steps taken.
-pub(super) fn minimum(problem: &Problem) -> Result<(Vec<f64>, usize), PhysicalError> {
+/// What is added to a Hessian of unit diagonal that rounding has made indefinite.
+const RIDGES: [f64; 6] = [0.0, 1e-15, 1e-13, 1e-11, 1e-9, 1e-7];
+
+/// Bodies and scalars on the way.
+#[derive(Clone)]
+pub(super) struct Point {
+    pub links: Vec<Pseudo>,
+    pub scalars: Vec<f64>,
+}
+
+impl Point {
+    /// All unknowns in a row.
+    pub fn unknowns(&self) -> Vec<f64> {
+        let links = self.links.iter().flat_map(Pseudo::values);
+        links.chain(self.scalars.iter().copied()).collect()
+    }
+}
+
+/// The minimum, and the steps taken.
+pub(super) fn minimum(problem: &Problem) -> Result<(Point, usize), PhysicalError> {
     let solver = Solver::new(problem)?;
     let mut at = solver.start();
     let mut steps = 0;
-    let against = problem.misfit(&problem.parameters(&at));
+    let against = problem.misfit(&problem.parameters(&at.unknowns()));
     let mut weight = against.max(problem.weight);
     loop {
         steps += solver.round(&mut at, weight)?;
@@ -36,13 +54,9 @@ pub(super) fn minimum(problem: &Problem) -> Result<(Vec<f64>, usize), PhysicalEr
     }
 }
 
-/// What is added to a Hessian of unit diagonal that rounding has made indefinite.
-const RIDGES: [f64; 6] = [0.0, 1e-15, 1e-13, 1e-11, 1e-9, 1e-7];
-
 struct Solver<'a> {
     problem: &'a Problem,
-    /// Inverse and log det of each described body.
-    described: Vec<(Square, f64)>,
+    described: Vec<Described>,
     /// K^T G K and K^T G X, with what is known beside.
     normal: Mat<f64>,
     right: Vec<f64>,
@@ -68,26 +82,34 @@ impl<'a> Solver<'a> {
     }
 
     /// The description.
-    fn start(&self) -> Vec<f64> {
-        let links = self.problem.links.iter().flat_map(|p| p.pseudo.values());
-        let scalars = self.problem.scalars.iter().map(|scalar| match scalar {
+    fn start(&self) -> Point {
+        let scalar = |scalar: &Scalar| match scalar {
             Scalar::Positive(described) => *described,
             Scalar::Free => 0.0,
-        });
-        links.chain(scalars).collect()
+        };
+        Point {
+            links: self
+                .problem
+                .links
+                .iter()
+                .map(|prior| prior.pseudo)
+                .collect(),
+            scalars: self.problem.scalars.iter().map(scalar).collect(),
+        }
     }
 
     /// Newton's method at one weight; the steps it took.
-    fn round(&self, at: &mut Vec<f64>, weight: f64) -> Result<usize, PhysicalError> {
+    fn round(&self, at: &mut Point, weight: f64) -> Result<usize, PhysicalError> {
         for step in 0..STEPS {
             let no_end = PhysicalError::NoEnd { steps: step };
-            let (gradient, hessian) = self.derivatives(at, weight).ok_or(no_end.clone())?;
-            let direction = descent(&gradient, &hessian).ok_or(no_end.clone())?;
+            let local = self.locals(at).ok_or(no_end.clone())?;
+            let (gradient, hessian) = self.derivatives(at, &local, weight);
+            let direction = descent(&gradient, &hessian).ok_or(no_end)?;
             let slope: f64 = gradient.iter().zip(&direction).map(|(g, d)| g * d).sum();
             if -0.5 * slope <= ENOUGH * weight {
                 return Ok(step);
             }
-            match self.along(at, &direction, slope, weight) {
+            match self.along(at, &local, (&direction, slope), weight) {
                 Some(next) => *at = next,
                 // Rounding leaves nothing to gain.
                 None => return Ok(step),
@@ -97,15 +119,18 @@ impl<'a> Solver<'a> {
     }
 
     /// As far along a direction as the objective falls well.
-    fn along(&self, at: &[f64], direction: &[f64], slope: f64, weight: f64) -> Option<Vec<f64>> {
+    fn along(
+        &self,
+        at: &Point,
+        local: &[Local],
+        (direction, slope): (&[f64], f64),
+        weight: f64,
+    ) -> Option<Point> {
         let here = self.value(at, weight)?;
         let mut length = 1.0;
         while length > 1e-12 {
-            let next: Vec<f64> = at
-                .iter()
-                .zip(direction)
-                .map(|(x, d)| x + length * d)
-                .collect();
+            let step: Vec<f64> = direction.iter().map(|d| length * d).collect();
+            let next = self.moved(at, local, &step);
             let there = self.value(&next, weight);
             if there.is_some_and(|there| there < here + 1e-4 * length * slope) {
                 return Some(next);
@@ -115,65 +140,97 @@ impl<'a> Solver<'a> {
         None
     }
 
-    fn links<'b>(&'b self, at: &'b [f64]) -> impl Iterator<Item = ([f64; 10], &'b (Square, f64))> {
-        let links = at.chunks_exact(10).zip(&self.described);
-        links.map(|(link, described)| (std::array::from_fn(|i| link[i]), described))
+    fn locals(&self, at: &Point) -> Option<Vec<Local>> {
+        let links = at.links.iter().zip(&self.described);
+        links
+            .map(|(link, described)| Local::of(link, described))
+            .collect()
+    }
+
+    /// A step in the coordinates of the bodies; positive scalars in shares of themselves.
+    fn moved(&self, at: &Point, local: &[Local], step: &[f64]) -> Point {
+        let (links, scalars) = step.split_at(10 * local.len());
+        let scalars = scalars.iter().zip(&at.scalars).zip(&self.problem.scalars);
+        Point {
+            links: local
+                .iter()
+                .zip(links.chunks_exact(10))
+                .map(|(local, step)| local.at(step))
+                .collect(),
+            scalars: scalars
+                .map(|((step, x), scalar)| x + step * unit(scalar, *x))
+                .collect(),
+        }
     }
 
     /// The objective; `None` outside of what exists.
-    fn value(&self, at: &[f64], weight: f64) -> Option<f64> {
+    fn value(&self, at: &Point, weight: f64) -> Option<f64> {
         let mut away = 0.0;
-        for (link, described) in self.links(at) {
-            away += value(&link, described)?;
+        for (link, described) in at.links.iter().zip(&self.described) {
+            away += divergence(link, described)?;
         }
-        let scalars = at.iter().skip(10 * self.described.len());
-        for (x, scalar) in scalars.zip(&self.problem.scalars) {
+        for (x, scalar) in at.scalars.iter().zip(&self.problem.scalars) {
             away += match scalar {
                 Scalar::Positive(_) if *x <= 0.0 => return None,
                 Scalar::Positive(described) => x / described - (x / described).ln() - 1.0,
                 Scalar::Free => 0.5 * HELD * x * x,
             };
         }
+        let unknowns = at.unknowns();
         let known = self.problem.known.iter().map(|known| {
-            let reached: f64 = known.factors.iter().map(|(k, f)| f * at[*k]).sum();
+            let reached: f64 = known.factors.iter().map(|(k, f)| f * unknowns[*k]).sum();
             0.5 * ((reached - known.value) / known.sigma).powi(2)
         });
-        let misfit = self.problem.misfit(&self.problem.parameters(at));
+        let misfit = self.problem.misfit(&self.problem.parameters(&unknowns));
         Some(misfit + known.sum::<f64>() + weight * away)
     }
 
-    /// Gradient and Hessian.
-    fn derivatives(&self, at: &[f64], weight: f64) -> Option<(Vec<f64>, Mat<f64>)> {
-        let mut hessian = self.normal.clone();
-        let mut gradient: Vec<f64> = (0..at.len())
-            .map(|i| {
-                (0..at.len())
-                    .map(|k| self.normal[(i, k)] * at[k])
-                    .sum::<f64>()
-            })
-            .zip(&self.right)
-            .map(|(pull, right)| pull - right)
-            .collect();
-        for (place, (link, described)) in self.links(at).enumerate() {
-            let divergence = divergence(&link, described)?;
-            for i in 0..10 {
-                gradient[10 * place + i] += weight * divergence.gradient[i];
-                for k in 0..10 {
-                    hessian[(10 * place + i, 10 * place + k)] += weight * divergence.hessian[i][k];
+    /// Gradient and Hessian in the coordinates of the bodies.
+    fn derivatives(&self, at: &Point, local: &[Local], weight: f64) -> (Vec<f64>, Mat<f64>) {
+        let unknowns = at.unknowns();
+        let count = unknowns.len();
+        let first = 10 * local.len();
+        let mut turn = Mat::<f64>::zeros(count, count);
+        let mut gradient = vec![0.0; count];
+        let mut curvature = vec![1.0; count];
+        for (link, local) in local.iter().enumerate() {
+            for (i, values) in local.values.iter().enumerate() {
+                gradient[10 * link + i] = local.gradient[i];
+                for (k, value) in values.iter().enumerate() {
+                    turn[(10 * link + k, 10 * link + i)] = *value;
                 }
             }
         }
-        let first = 10 * self.described.len();
-        for (place, scalar) in self.problem.scalars.iter().enumerate() {
-            let (place, x) = (first + place, at[first + place]);
-            let (slope, curve) = match scalar {
-                Scalar::Positive(described) => (1.0 / described - 1.0 / x, 1.0 / (x * x)),
+        for (place, (x, scalar)) in at.scalars.iter().zip(&self.problem.scalars).enumerate() {
+            let place = first + place;
+            turn[(place, place)] = unit(scalar, *x);
+            (gradient[place], curvature[place]) = match scalar {
+                Scalar::Positive(described) => (x / described - 1.0, 1.0),
                 Scalar::Free => (HELD * x, HELD),
             };
-            gradient[place] += weight * slope;
-            hessian[(place, place)] += weight * curve;
         }
-        Some((gradient, hessian))
+        let pull = |i: usize| {
+            let row = (0..count).map(|k| self.normal[(i, k)] * unknowns[k]);
+            row.sum::<f64>() - self.right[i]
+        };
+        let pull: Vec<f64> = (0..count).map(pull).collect();
+        for (k, gradient) in gradient.iter_mut().enumerate() {
+            let data: f64 = (0..count).map(|i| turn[(i, k)] * pull[i]).sum();
+            *gradient = weight * *gradient + data;
+        }
+        let mut hessian = turn.transpose() * &self.normal * &turn;
+        for (k, curvature) in curvature.into_iter().enumerate() {
+            hessian[(k, k)] += weight * curvature;
+        }
+        (gradient, hessian)
+    }
+}
+
+/// What a scalar's coordinate is counted in: a positive one in shares of itself.
+fn unit(scalar: &Scalar, value: f64) -> f64 {
+    match scalar {
+        Scalar::Positive(_) => value,
+        Scalar::Free => 1.0,
     }
 }
 

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use idim::codegen::Robot;
+use idim::exported::Identified;
 use idim::runtime::model::IdentificationModel;
 use serde_json::Value;
 
@@ -14,15 +15,13 @@ use super::super::simulate::parameters;
 const SHARE: f64 = 0.01;
 const LEAST: f64 = 1e-3;
 
-/// np values, what is known of their errors, and the inverse covariance, np x np.
+/// Values, what is known of their errors, and their metric.
 pub(super) struct Found {
-    pub values: Vec<f64>,
     pub sigma: Vec<Option<f64>>,
-    pub precision: Vec<f64>,
+    pub identified: Identified,
 }
 
-/// Reads values and precision. Standard deviations that respect the autocorrelation of residuals
-/// stretch the metric; values of a TOML count as known to a hundredth.
+/// Reads values and their metric; those of a TOML count as known to a hundredth.
 ///
 /// # Errors
 /// Those of [`parameters::read`].
@@ -39,36 +38,33 @@ pub(super) fn read(
     let Some(explicit) = explicit.or(models.first()) else {
         let sigma: Vec<Option<f64>> = assumed(&values, robot).into_iter().map(Some).collect();
         return Ok(Found {
-            precision: alone(&sigma),
+            identified: Identified::new(values, (&sigma, &sigma), &[]),
             sigma,
-            values,
         });
     };
-    let by_name = |name: &str, key: &str| {
-        let parameters = explicit["parameters"].as_array()?;
-        let parameter = parameters.iter().find(|p| p["name"] == name)?;
-        parameter[key].as_f64()
-    };
-    let columns = model.columns().iter();
-    let each = |key: &'static str| -> Vec<Option<f64>> {
-        let columns = columns.clone();
-        columns.map(|column| by_name(&column.name, key)).collect()
+    let parameters = explicit["parameters"]
+        .as_array()
+        .map_or(&[][..], Vec::as_slice);
+    let each = |key: &str| -> Vec<Option<f64>> {
+        let columns = model.columns().iter();
+        let of = |name: &str| parameters.iter().find(|p| p["name"] == name)?[key].as_f64();
+        columns.map(|column| of(&column.name)).collect()
     };
     let (plain, corrected) = (each("sigma"), each("sigma_corrected"));
-    let sigma: Vec<Option<f64>> = corrected
-        .iter()
-        .zip(&plain)
-        .map(|(corrected, plain)| corrected.or(*plain))
-        .collect();
-    let precision = match lower(&explicit["precision"], values.len()) {
-        Some(lower) => stretched(&lower, &plain, &sigma),
-        None => alone(&sigma),
-    };
+    let pairs = corrected.iter().zip(&plain);
     Ok(Found {
-        values,
-        sigma,
-        precision,
+        sigma: pairs
+            .map(|(corrected, plain)| corrected.or(*plain))
+            .collect(),
+        identified: Identified::new(values, (&plain, &corrected), &lower(&explicit["precision"])),
     })
+}
+
+/// The rows of a triangle.
+fn lower(json: &Value) -> Vec<Vec<f64>> {
+    let numbers = |row: &Value| row.as_array()?.iter().map(Value::as_f64).collect();
+    let rows = json.as_array().map_or(&[][..], Vec::as_slice).iter();
+    rows.map(numbers).collect::<Option<_>>().unwrap_or_default()
 }
 
 /// Standard deviations of values that are only stated.
@@ -89,47 +85,4 @@ fn assumed(values: &[f64], robot: &Robot) -> Vec<f64> {
             .max(f64::MIN_POSITIVE.sqrt())
     })
     .collect()
-}
-
-/// Independent errors; nothing is known of what has no standard deviation.
-fn alone(sigma: &[Option<f64>]) -> Vec<f64> {
-    let np = sigma.len();
-    let mut precision = vec![0.0; np * np];
-    for (k, sigma) in sigma.iter().enumerate() {
-        precision[k * np + k] = sigma.filter(|s| *s > 0.0).map_or(0.0, |s| s.powi(-2));
-    }
-    precision
-}
-
-/// The lower triangle of a JSON as a full matrix, if it is one of np rows.
-fn lower(json: &Value, np: usize) -> Option<Vec<f64>> {
-    let rows = json.as_array().filter(|rows| rows.len() == np)?;
-    let mut full = vec![0.0; np * np];
-    for (i, row) in rows.iter().enumerate() {
-        for (k, value) in row
-            .as_array()
-            .filter(|row| row.len() == i + 1)?
-            .iter()
-            .enumerate()
-        {
-            let value = value.as_f64()?;
-            full[i * np + k] = value;
-            full[k * np + i] = value;
-        }
-    }
-    Some(full)
-}
-
-/// The metric in which each parameter has its corrected standard deviation.
-fn stretched(full: &[f64], plain: &[Option<f64>], sigma: &[Option<f64>]) -> Vec<f64> {
-    let np = plain.len();
-    let pairs = plain.iter().zip(sigma);
-    let shrink: Vec<f64> = pairs
-        .map(|pair| match pair {
-            (Some(plain), Some(sigma)) if *sigma > 0.0 => plain / sigma,
-            _ => 1.0,
-        })
-        .collect();
-    let entry = |at: usize| full[at] * shrink[at / np] * shrink[at % np];
-    (0..np * np).map(entry).collect()
 }
