@@ -16,6 +16,10 @@ pub(super) struct Local {
     pub gradient: [f64; 10],
 }
 
+/// A step leaves at least this share of a body in every direction: what has all but vanished could
+/// only be doubled by each further step.
+pub(super) const LEFT: f64 = 0.1;
+
 /// Rows and columns of the ten coordinates.
 const PLACES: [(usize, usize); 10] = [
     (0, 0),
@@ -54,8 +58,8 @@ impl Local {
         })
     }
 
-    /// The body at these coordinates.
-    pub fn at(&self, coordinates: &[f64]) -> Pseudo {
+    /// The body at these coordinates; `None` where it would lose more than [`LEFT`] in a direction.
+    pub fn at(&self, coordinates: &[f64]) -> Option<Pseudo> {
         let mut inside = [[0.0; 4]; 4];
         for (i, row) in inside.iter_mut().enumerate() {
             row[i] = 1.0;
@@ -66,7 +70,12 @@ impl Local {
                 row.iter_mut().zip(unit).for_each(|(s, u)| *s += x * u);
             }
         }
-        Pseudo(stretched(&self.root, &inside))
+        let mut above = inside;
+        for (i, row) in above.iter_mut().enumerate() {
+            row[i] -= LEFT;
+        }
+        let stays = Pseudo(above).exists();
+        stays.then(|| Pseudo(stretched(&self.root, &inside)))
     }
 }
 
@@ -109,7 +118,7 @@ mod tests {
         let value = |i: usize, by: f64| {
             let mut at = [0.0; 10];
             at[i] = by;
-            divergence(&local.at(&at), &described).unwrap()
+            divergence(&local.at(&at).unwrap(), &described).unwrap()
         };
         let here = divergence(&pseudo, &described).unwrap();
         for i in 0..10 {
@@ -124,7 +133,13 @@ mod tests {
             let values = local.at(&std::array::from_fn::<f64, 10, _>(|k| {
                 f64::from(u8::from(i == k)) * step
             }));
-            for (k, (a, b)) in values.values().iter().zip(pseudo.values()).enumerate() {
+            for (k, (a, b)) in values
+                .unwrap()
+                .values()
+                .iter()
+                .zip(pseudo.values())
+                .enumerate()
+            {
                 assert!((a - b - step * local.values[i][k]).abs() < 1e-14);
             }
         }

@@ -3,7 +3,7 @@
 use faer::prelude::Solve;
 use faer::{Mat, Side};
 
-use super::bodies::{Described, Local, divergence};
+use super::bodies::{Described, LEFT, Local, divergence};
 use super::pseudo::Pseudo;
 use super::{PhysicalError, Problem, Scalar};
 
@@ -131,9 +131,9 @@ impl<'a> Solver<'a> {
         while length > 1e-12 {
             let step: Vec<f64> = direction.iter().map(|d| length * d).collect();
             let next = self.moved(at, local, &step);
-            let there = self.value(&next, weight);
+            let there = next.as_ref().and_then(|next| self.value(next, weight));
             if there.is_some_and(|there| there < here + 1e-4 * length * slope) {
-                return Some(next);
+                return next;
             }
             length *= 0.5;
         }
@@ -147,20 +147,21 @@ impl<'a> Solver<'a> {
             .collect()
     }
 
-    /// A step in the coordinates of the bodies; positive scalars in shares of themselves.
-    fn moved(&self, at: &Point, local: &[Local], step: &[f64]) -> Point {
+    /// A step in the coordinates of the bodies, positive scalars in shares of themselves; `None`
+    /// if it leads too far.
+    fn moved(&self, at: &Point, local: &[Local], step: &[f64]) -> Option<Point> {
         let (links, scalars) = step.split_at(10 * local.len());
+        let links = local.iter().zip(links.chunks_exact(10));
+        let links = links
+            .map(|(local, step)| local.at(step))
+            .collect::<Option<_>>()?;
         let scalars = scalars.iter().zip(&at.scalars).zip(&self.problem.scalars);
-        Point {
-            links: local
-                .iter()
-                .zip(links.chunks_exact(10))
-                .map(|(local, step)| local.at(step))
-                .collect(),
-            scalars: scalars
-                .map(|((step, x), scalar)| x + step * unit(scalar, *x))
-                .collect(),
-        }
+        let scalar = |((step, x), scalar): ((&f64, &f64), &Scalar)| match scalar {
+            Scalar::Positive(_) if *step < LEFT - 1.0 => None,
+            scalar => Some(x + step * unit(scalar, *x)),
+        };
+        let scalars = scalars.map(scalar).collect::<Option<_>>()?;
+        Some(Point { links, scalars })
     }
 
     /// The objective; `None` outside of what exists.
