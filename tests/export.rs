@@ -9,6 +9,7 @@
 
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 use idim::codegen::emit::urdf;
 use idim::codegen::mechanism::Standard;
@@ -360,4 +361,58 @@ fn what_cannot_be_exported_is_said() {
     let longer = ARM.replace("0 0 0.4", "0 0 0.5");
     let other = export(&robot, Some(&longer), &identified, &fill());
     assert!(matches!(other, Err(ExportError::Other(_))));
+}
+
+#[test]
+fn pinocchio_and_mujoco_read_what_is_meant() {
+    let python = Command::new("python3")
+        .args(["-c", "import mujoco, numpy, pinocchio"])
+        .output();
+    if !python.is_ok_and(|output| output.status.success()) {
+        println!("skipped: python3 with numpy, pinocchio and mujoco is not here");
+        return;
+    }
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let output = Command::new("python3")
+        .arg(root.join("tests/interop/urdf.py"))
+        .args(["--idim", env!("CARGO_BIN_EXE_idim")])
+        .args(["scara", "tx40", "ur10e", "panda"].map(|name| root.join(format!("robots/{name}.toml"))))
+        .output()
+        .unwrap();
+    let said = String::from_utf8_lossy(&output.stdout);
+    println!("{said}");
+    assert!(output.status.success(), "{said}{}", String::from_utf8_lossy(&output.stderr));
+}
+
+#[test]
+fn command_writes_a_urdf_and_says_what_it_holds() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    let values = "[parameters]\nZZR1 = 3.5\nZZ2 = 0.06\nLMX2 = 0.12\nLMY2 = 0.0\nFV1 = 0.05\nFS1 = 0.5\nFV2 = 0.01\nFS2 = 0.1\n";
+    std::fs::write(path("values.toml"), values).unwrap();
+    let run = |more: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_idim"));
+        command.args(["export", "scara", "--parameters"]);
+        command.arg(path("values.toml")).args(more);
+        command.current_dir(folder.path()).output().unwrap()
+    };
+    let output = run(&["-o", "scara.urdf", "--json", "scara.json"]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let said = String::from_utf8_lossy(&output.stdout);
+    assert!(said.contains("principal moments"), "{said}");
+    let read = builder::read(&path("scara.urdf")).unwrap().robot;
+    assert_eq!(read.mechanism.joints.len(), 2);
+    let json = std::fs::read_to_string(path("scara.json")).unwrap();
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    let exported = |name: &str| {
+        let parameters = json["parameters"].as_array().unwrap().iter();
+        let mut named = parameters.filter(|p| p["name"] == name);
+        named.next().unwrap()["exported"].as_f64().unwrap()
+    };
+    assert!((exported("ZZR1") - 3.5).abs() < 0.05);
+    let wrong = run(&["--mass", "elbow"]);
+    assert_eq!(wrong.status.code(), Some(2));
+    let heavy = run(&["--mass", "forearm=3"]);
+    assert_eq!(heavy.status.code(), Some(1));
+    assert!(String::from_utf8_lossy(&heavy.stderr).contains("there is no joint or moving link"));
 }

@@ -7,13 +7,13 @@ use super::bodies::{Described, LEFT, Local, divergence};
 use super::pseudo::Pseudo;
 use super::{PhysicalError, Problem, Scalar};
 
-/// At first the description counts as much as the data speak against it, and a tenth of that in
+/// At first the description counts as much as the data speak against it, and a third of that in
 /// every further round: each begins where Newton's method converges fast.
-const FALL: f64 = 0.1;
+const FALL: f64 = 0.3;
 
 /// Steps of one round, and half the squared Newton decrement at which it ends, as a share of the
 /// weight: the method converges quadratically there.
-const STEPS: usize = 200;
+const STEPS: usize = 20_000;
 const ENOUGH: f64 = 1e-12;
 
 /// What free scalars are held to zero with, per unit squared, as a share of the weight; far below
