@@ -376,12 +376,19 @@ fn pinocchio_and_mujoco_read_what_is_meant() {
     let output = Command::new("python3")
         .arg(root.join("tests/interop/urdf.py"))
         .args(["--idim", env!("CARGO_BIN_EXE_idim")])
-        .args(["scara", "tx40", "ur10e", "panda"].map(|name| root.join(format!("robots/{name}.toml"))))
+        .args(
+            ["scara", "tx40", "ur10e", "panda"]
+                .map(|name| root.join(format!("robots/{name}.toml"))),
+        )
         .output()
         .unwrap();
     let said = String::from_utf8_lossy(&output.stdout);
     println!("{said}");
-    assert!(output.status.success(), "{said}{}", String::from_utf8_lossy(&output.stderr));
+    assert!(
+        output.status.success(),
+        "{said}{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
 }
 
 #[test]
@@ -397,7 +404,11 @@ fn command_writes_a_urdf_and_says_what_it_holds() {
         command.current_dir(folder.path()).output().unwrap()
     };
     let output = run(&["-o", "scara.urdf", "--json", "scara.json"]);
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
     let said = String::from_utf8_lossy(&output.stdout);
     assert!(said.contains("principal moments"), "{said}");
     let read = builder::read(&path("scara.urdf")).unwrap().robot;

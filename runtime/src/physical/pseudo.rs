@@ -182,11 +182,11 @@ mod tests {
     fn inverse_is_one_and_triangle_inequality_is_what_exists_asks() {
         let ball = Pseudo::ball(1.5, 0.2, [0.1, 0.2, -0.3]);
         let (inverse, log_det) = ball.inverse().unwrap();
-        for i in 0..4 {
-            for k in 0..4 {
-                let product: f64 = (0..4).map(|j| ball.0[i][j] * inverse[j][k]).sum();
-                assert!((product - f64::from(u8::from(i == k))).abs() < 1e-12);
-            }
+        let product =
+            |i: usize, k: usize| (0..4).map(|j| ball.0[i][j] * inverse[j][k]).sum::<f64>();
+        for place in 0..16 {
+            let (i, k) = (place / 4, place % 4);
+            assert!((product(i, k) - f64::from(u8::from(i == k))).abs() < 1e-12);
         }
         // About the centre of mass: m (m r^2)^3.
         assert!((log_det - (1.5_f64 * (1.5 * 0.04_f64).powi(3)).ln()).abs() < 1e-12);
