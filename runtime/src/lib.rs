@@ -10,6 +10,7 @@ pub mod batch;
 pub mod diagnose;
 pub mod estimate;
 pub mod evidence;
+pub mod excite;
 pub mod identify;
 pub mod knowledge;
 pub mod lane;

@@ -34,6 +34,26 @@ impl Effects {
         kinds.iter().map(spec).filter(|spec| !known(spec)).collect()
     }
 
+    /// An effect of the catalogue on one joint, counted from 0, with its default shape, as entries of
+    /// a description; empty for what is not known, what the robot has already, and what a
+    /// description cannot ask for.
+    pub fn asked(&self, name: &str, joint: usize) -> Vec<EffectSpec> {
+        let Some(entry) = CATALOGUE
+            .iter()
+            .position(|effect| effect.entry.name == name)
+        else {
+            return Vec::new();
+        };
+        let hypothesis = Hypothesis {
+            entry,
+            joints: vec![joint],
+            grid: Vec::new(),
+            bounds: Vec::new(),
+            least: 0.0,
+        };
+        self.described(&hypothesis, &[])
+    }
+
     /// The robot with further effects: a model whose columns are theirs too, to identify and to
     /// simulate with.
     ///

@@ -34,6 +34,9 @@ pub enum Failure {
     /// A diagnosis that is not possible.
     #[error(transparent)]
     Diagnose(#[from] idim::runtime::diagnose::DiagnoseError),
+    /// An exciting motion that is not possible.
+    #[error(transparent)]
+    Excite(#[from] idim::runtime::excite::ExciteError),
     /// A simulation that is not possible.
     #[error(transparent)]
     Simulate(#[from] idim::runtime::simulate::SimulateError),

@@ -5,6 +5,7 @@
 mod demo;
 mod describe;
 mod diagnose;
+mod excite;
 mod export;
 mod failure;
 mod fits;
@@ -40,6 +41,8 @@ enum Command {
     Describe(describe::Arguments),
     /// The effect that a robot's model lacks, found in its logs, and the gap that it closes.
     Diagnose(Box<diagnose::Arguments>),
+    /// A motion along which the parameters of a robot can be told apart, within its limits.
+    Excite(Box<excite::Arguments>),
     /// Identified, physically consistent inertias in a URDF.
     Export(export::Arguments),
     /// The specialised code of a robot.
@@ -56,6 +59,7 @@ pub fn run(arguments: Arguments) -> ExitCode {
         Command::Demo(arguments) => demo::run(&arguments),
         Command::Describe(arguments) => describe::run(&arguments),
         Command::Diagnose(arguments) => diagnose::run(&arguments),
+        Command::Excite(arguments) => excite::run(&arguments),
         Command::Export(arguments) => export::run(&arguments),
         Command::Generate(arguments) => generate::run(&arguments),
         Command::Identify(arguments) => identify::run(&arguments),

@@ -264,9 +264,9 @@ impl Setup<'_> {
 
     fn grid(&self, companion: &Companion, reference: &Reference) -> Result<Grid, Failure> {
         let rate_hz = self.arguments.rate.or(companion.rate_hz).unwrap_or(RATE_HZ);
-        let samples = match reference {
-            Reference::Fourier(fourier) => fourier.periods / fourier.f0_hz * rate_hz,
-            Reference::Sampled { q } => q.first().map_or(0, Vec::len).saturating_sub(1) as f64,
+        let samples = match (reference, reference.seconds()) {
+            (Reference::Sampled { q }, _) => q.first().map_or(0, Vec::len).saturating_sub(1) as f64,
+            (_, seconds) => seconds.unwrap_or(0.0) * rate_hz,
         };
         if !(samples.is_finite() && (0.0..LONGEST).contains(&samples)) {
             return Err(Failure::Usage {

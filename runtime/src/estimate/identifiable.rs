@@ -24,7 +24,7 @@ pub struct Dependency {
 }
 
 /// What a triangular factor of W says about the parameters.
-pub(super) struct Identifiability {
+pub(crate) struct Identifiability {
     /// Parameters whose columns are zero.
     pub unseen: Vec<usize>,
     /// Groups of parameters that depend on each other in the data.
@@ -49,8 +49,8 @@ impl Identifiability {
     }
 }
 
-/// Finds rank, dependent groups and an independent set from the factor `r` of `[W | Y]`.
-pub(super) fn identifiability(r: &Mat<f64>, np: usize) -> Result<Identifiability, EstimateError> {
+/// Finds rank, dependent groups and an independent set from W, or from the factor `r` of `[W | Y]`.
+pub(crate) fn identifiability(r: &Mat<f64>, np: usize) -> Result<Identifiability, EstimateError> {
     let norms: Vec<f64> = (0..np).map(|c| r.col(c).norm_l2()).collect();
     let largest = norms.iter().copied().fold(0.0, f64::max);
     let (seen, unseen): (Vec<usize>, Vec<usize>) =

@@ -26,6 +26,7 @@ mod weights;
 pub use double::Double;
 pub use entries::Entries;
 pub use identifiable::Dependency;
+pub(crate) use identifiable::identifiability;
 pub use instrumental::{Instrumental, instrumental, long_run};
 pub use least_squares::{Estimate, estimate, from_triangles};
 pub use refine::{Refined, refine, refined};

@@ -15,6 +15,8 @@ use super::companion::{Mistake, positive};
 pub enum Reference {
     /// A truncated Fourier series per joint.
     Fourier(Fourier),
+    /// Polynomials of degree five between points.
+    ViaPoints(ViaPoints),
     /// The log's own `q1_ref..` columns.
     Sampled {
         /// One series per joint on the grid of the recording, rad or m.
@@ -27,7 +29,17 @@ impl Reference {
     pub fn joints(&self) -> usize {
         match self {
             Reference::Fourier(fourier) => fourier.center.len(),
+            Reference::ViaPoints(points) => points.q.len(),
             Reference::Sampled { q } => q.len(),
+        }
+    }
+
+    /// How long the motion takes, s; `None` for a sampled one, which has as many samples as its log.
+    pub fn seconds(&self) -> Option<f64> {
+        match self {
+            Reference::Fourier(fourier) => Some(fourier.periods / fourier.f0_hz),
+            Reference::ViaPoints(points) => Some(points.periods * points.period_s()),
+            Reference::Sampled { .. } => None,
         }
     }
 }
@@ -46,6 +58,29 @@ pub struct Fourier {
     pub sin: Vec<Vec<f64>>,
     /// Cosine coefficients, joint by joint, rad or m.
     pub cos: Vec<Vec<f64>>,
+}
+
+/// The polynomial of degree five between every two neighbouring points that has position, velocity
+/// and acceleration of both; one row per joint, every row as long as `times`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ViaPoints {
+    /// When the points are passed, s, increasing from 0.
+    pub times: Vec<f64>,
+    /// The same motion so many times; afterwards the joints stay where they are.
+    pub periods: f64,
+    /// Positions, rad or m.
+    pub q: Vec<Vec<f64>>,
+    /// Velocities.
+    pub qd: Vec<Vec<f64>>,
+    /// Accelerations.
+    pub qdd: Vec<Vec<f64>>,
+}
+
+impl ViaPoints {
+    /// One period, s.
+    pub fn period_s(&self) -> f64 {
+        self.times.last().copied().unwrap_or(0.0)
+    }
 }
 
 /// The control law: the only one known so far.
@@ -101,18 +136,6 @@ pub struct Controller {
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct RawReference {
-    kind: Spanned<String>,
-    f0_hz: Spanned<f64>,
-    #[serde(default)]
-    periods: Option<Spanned<f64>>,
-    center: Spanned<Vec<f64>>,
-    sin: Spanned<Vec<Vec<f64>>>,
-    cos: Spanned<Vec<Vec<f64>>>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
 pub(super) struct RawController {
     law: Law,
     kp: Spanned<Vec<f64>>,
@@ -123,38 +146,6 @@ pub(super) struct RawController {
     torque_limit: Option<Spanned<Vec<f64>>>,
     #[serde(default)]
     start: Start,
-}
-
-impl RawReference {
-    pub(super) fn check(self) -> Result<Reference, Mistake> {
-        if self.kind.get_ref() != "fourier" {
-            let message = format!(
-                "kind = \"{}\" is not known; expected \"fourier\"",
-                self.kind.get_ref()
-            );
-            return Err((self.kind.span(), message));
-        }
-        let joints = self.center.get_ref().len();
-        let harmonics = self.sin.get_ref().first().map_or(0, Vec::len);
-        for (key, rows) in [("sin", &self.sin), ("cos", &self.cos)] {
-            let span = rows.span();
-            same_length(key, "rows", rows.get_ref().len(), joints, &span)?;
-            for row in rows.get_ref() {
-                same_length(key, "harmonics in each row", row.len(), harmonics, &span)?;
-                finite(key, row, &span)?;
-            }
-        }
-        finite("center", self.center.get_ref(), &self.center.span())?;
-        Ok(Reference::Fourier(Fourier {
-            f0_hz: positive("f0_hz", self.f0_hz)?,
-            periods: self
-                .periods
-                .map_or(Ok(1.0), |periods| positive("periods", periods))?,
-            center: self.center.into_inner(),
-            sin: self.sin.into_inner(),
-            cos: self.cos.into_inner(),
-        }))
-    }
 }
 
 impl RawController {
@@ -189,7 +180,7 @@ impl RawController {
     }
 }
 
-fn same_length(
+pub(super) fn same_length(
     key: &str,
     what: &str,
     found: usize,
@@ -205,7 +196,7 @@ fn same_length(
     ))
 }
 
-fn finite(key: &str, values: &[f64], span: &Range<usize>) -> Result<(), Mistake> {
+pub(super) fn finite(key: &str, values: &[f64], span: &Range<usize>) -> Result<(), Mistake> {
     if values.iter().all(|value| value.is_finite()) {
         return Ok(());
     }
@@ -216,56 +207,9 @@ fn finite(key: &str, values: &[f64], span: &Range<usize>) -> Result<(), Mistake>
 mod tests {
     use super::*;
 
-    fn reference(center: &str, sin: &str, cos: &str) -> Result<Reference, Mistake> {
-        let text = format!(
-            "kind = 'fourier'\nf0_hz = 0.1\nperiods = 2\ncenter = {center}\nsin = {sin}\ncos = {cos}"
-        );
-        toml::from_str::<RawReference>(&text).unwrap().check()
-    }
-
     fn controller(text: &str) -> Result<Controller, String> {
         let raw = toml::from_str::<RawController>(text).map_err(|e| e.message().to_owned())?;
         raw.check().map_err(|(_, message)| message)
-    }
-
-    #[test]
-    fn reference_with_equal_rows_is_accepted() {
-        let found = reference("[0.0, 1]", "[[1.0], [2.0]]", "[[3.0], [4.0]]").unwrap();
-        assert_eq!(found.joints(), 2);
-    }
-
-    #[test]
-    fn reference_with_unequal_rows_says_which_list_and_how_many() {
-        for (center, sin, cos, message) in [
-            (
-                "[0.0]",
-                "[[1.0], [2.0]]",
-                "[[1.0]]",
-                "sin has 2 rows, expected 1",
-            ),
-            (
-                "[0.0]",
-                "[[1.0]]",
-                "[[1.0, 2.0]]",
-                "cos has 2 harmonics in each row, expected 1",
-            ),
-            ("[nan]", "[[1.0]]", "[[1.0]]", "center holds NaN"),
-            ("[0.0]", "[[inf]]", "[[1.0]]", "sin holds NaN"),
-        ] {
-            let (_, found) = reference(center, sin, cos).unwrap_err();
-            assert!(found.contains(message), "{found}");
-        }
-    }
-
-    #[test]
-    fn reference_of_an_unknown_kind_names_the_known_one() {
-        let text = "kind = 'csv'\nf0_hz = 1\ncenter = []\nsin = []\ncos = []";
-        let (span, message) = toml::from_str::<RawReference>(text)
-            .unwrap()
-            .check()
-            .unwrap_err();
-        assert!(message.contains("expected \"fourier\""), "{message}");
-        assert_eq!(&text[span], "'csv'");
     }
 
     #[test]

@@ -9,9 +9,10 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::closed_loop::{Controller, RawController, RawReference, Reference};
+use super::closed_loop::{Controller, RawController, Reference};
 use super::error::LogError;
 use super::naming::{Family, Q, QM};
+use super::reference::RawReference;
 use crate::model::Joint;
 
 /// Where a column comes from: `q1 = { from = "pos_shoulder", unit = "deg", gain = -1.0 }`.

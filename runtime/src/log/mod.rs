@@ -29,6 +29,7 @@ mod parse;
 mod rate;
 mod read;
 pub mod recording;
+mod reference;
 mod resample;
 mod samples;
 mod source;
@@ -44,7 +45,7 @@ mod write;
 mod tests;
 
 pub use any::Log;
-pub use closed_loop::{Controller, Feedforward, Fourier, Law, Reference, Start};
+pub use closed_loop::{Controller, Feedforward, Fourier, Law, Reference, Start, ViaPoints};
 pub use companion::{ColumnSource, Companion};
 pub(crate) use doubt::resolution;
 pub use error::{LogError, Problem};

@@ -6,6 +6,7 @@
 pub(crate) mod changed;
 mod diagnosed;
 mod diagnosis;
+mod excitation;
 mod gains;
 mod html;
 mod identification;
@@ -25,6 +26,7 @@ pub use diagnosis::{
     Alternative, Change, Diagnosis, EffectParameter, Estimated, FoundEffect, Gap, Located,
     RankedEffect, Refitted, RejectedEffect, Rms, Verdict,
 };
+pub use excitation::terminal as excitation_terminal;
 pub use gains::{DriveGains, GainFactor, terminal as gains_terminal};
 pub use html::{diagnosis_html, html, story};
 pub use identification::{

@@ -50,6 +50,7 @@ mod result;
 mod slip;
 mod surface;
 mod trajectory;
+mod via_points;
 
 #[cfg(test)]
 mod tests;

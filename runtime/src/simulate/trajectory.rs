@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 
 use super::error::SimulateError;
 use super::options::Grid;
+use super::via_points;
 use crate::log::{Fourier, Reference};
 use crate::signal::central_difference;
 
@@ -19,8 +20,8 @@ pub struct Trajectory {
 }
 
 impl Trajectory {
-    /// Evaluates a reference: a Fourier series with its exact derivatives at the times of the grid,
-    /// a sampled reference with central differences (its first sample is that of the grid).
+    /// Evaluates a reference: a Fourier series or a motion through points with its exact
+    /// derivatives at the times of the grid, a sampled reference with central differences (its first sample is that of the grid).
     ///
     /// # Errors
     /// [`SimulateError::NotPositive`] or [`SimulateError::Empty`] for a grid that is none,
@@ -29,6 +30,7 @@ impl Trajectory {
         grid.check()?;
         match reference {
             Reference::Fourier(fourier) => Ok(Trajectory::fourier(fourier, grid)),
+            Reference::ViaPoints(points) => Ok(via_points::along(points, grid)),
             Reference::Sampled { q } => Trajectory::sampled(q, grid),
         }
     }
