@@ -103,18 +103,37 @@ fn fixture() -> Case {
     }
 }
 
-/// The same repository's optimised motion, data/truth/train_waypoints.json (IPOPT, best of 16
-/// seeds): cubic splines through 13 points, 24 s. The limits are its box of positions, and per joint
-/// the largest velocity and acceleration of the natural spline through its points.
-fn waypoints() -> Case {
-    let lower = [-PI, -2.3707963, 0.7707963, -2.7707963, -1.7707963, -1.5];
-    let upper = [PI, -1.3707963, 1.7707963, -0.3707963, -0.0707963, 1.2];
+/// Positions of the same repository's optimised motion, data/truth/train_waypoints.json (IPOPT, best
+/// of 16 seeds): cubic splines through 13 points, 24 s.
+const BOX: [[f64; 6]; 2] = [
+    [-PI, -2.3707963, 0.7707963, -2.7707963, -1.7707963, -1.5],
+    [PI, -1.3707963, 1.7707963, -0.3707963, -0.0707963, 1.2],
+];
+
+/// The same box with half the velocities and accelerations of the robot, as config/
+/// ur10_unified_config.yaml has it.
+fn halved() -> Case {
     Case {
-        name: "UR10, 36 parameters, 24 s, 12 numbers a joint, the box and speeds of its points",
+        name: "UR10, 36 parameters, 24 s, 12 numbers a joint, its box, half its speeds",
+        limits: limits(
+            BOX[0],
+            BOX[1],
+            [1.0471976, 1.0471976, 0.5 * PI, 0.5 * PI, 0.5 * PI, 0.5 * PI],
+            [20.0; 6],
+        ),
+        ..waypoints()
+    }
+}
+
+/// The same box; no joint faster than it is in the published motion, nor with more acceleration
+/// (natural splines through its points).
+fn waypoints() -> Case {
+    Case {
+        name: "UR10, 36 parameters, 24 s, 12 numbers a joint, its box, its own speeds",
         robot: ("ur10.toml", UR10.into()),
         limits: limits(
-            lower,
-            upper,
+            BOX[0],
+            BOX[1],
             [1.4943, 0.5108, 0.5380, 1.2319, 0.8403, 1.4638],
             [1.948, 0.483, 0.863, 1.855, 0.984, 2.385],
         ),
@@ -170,7 +189,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1).map(|text| text.parse::<usize>());
     let starts = arguments.next().transpose()?.unwrap_or(16);
     let steps = arguments.next().transpose()?.unwrap_or(400);
-    for case in [fixture(), waypoints(), ur10e(), puma()] {
+    for case in [fixture(), halved(), waypoints(), ur10e(), puma()] {
         let (file, text) = &case.robot;
         let model = Interpreter::new(&builder::read_texts(&[(file, text)])?);
         let task = Task {

@@ -46,6 +46,14 @@ impl Outcome<'_> {
                  more harmonics or points, more time, or wider limits."
             ));
         }
+        let not_judged = self.within.not_judged(task);
+        if !not_judged.is_empty() {
+            warnings.push(format!(
+                "Nothing is said of {}: friction before sliding has a memory, which the search does \
+                 not run along its motions.",
+                not_judged.join(", ")
+            ));
+        }
         Ok(Excitation {
             robot: task.model.name().to_owned(),
             family: settings.family,

@@ -72,12 +72,30 @@ impl Within {
         columns.iter().map(place).collect()
     }
 
+    /// Parameters of contacts that yield before they slide, whose states the search does not run
+    /// along a motion: nothing is said of them.
+    pub fn not_judged(&self, task: &Task<'_>) -> Vec<String> {
+        let unseen = self.groups.iter().filter(|group| self.yields(task, group));
+        let columns = unseen.flat_map(|(columns, _)| columns);
+        columns.map(|column| name(task, *column)).collect()
+    }
+
+    /// Whether a group is an unseen column of such a contact.
+    fn yields(&self, task: &Task<'_>, (columns, known): &(Vec<usize>, usize)) -> bool {
+        let mut contacts = task.model.presliding().iter();
+        let joint = |column: &usize| task.model.columns().get(*column).map(|it| it.joint);
+        let joint = columns.first().and_then(joint);
+        *known == 0 && contacts.any(|contact| Some(contact.joint + 1) == joint)
+    }
+
     pub fn undetermined(&self, task: &Task<'_>) -> Vec<Undetermined> {
         let group = |(columns, known): &(Vec<usize>, usize)| Undetermined {
             names: columns.iter().map(|column| name(task, *column)).collect(),
             known: *known,
         };
-        self.groups.iter().map(group).collect()
+        let groups = self.groups.iter();
+        let groups = groups.filter(|group| !self.yields(task, group));
+        groups.map(group).collect()
     }
 }
 
