@@ -65,8 +65,7 @@ impl Cost<'_> {
             self.regressor.pull_torque(parameters, &of_tau, len, to);
         }
         let mut of_path = self.regressor.pull_path(&path, &signals, &of_signals);
-        for order in 0..3 {
-            let limits = of_limits[order].iter();
+        for (order, limits) in of_limits.iter().enumerate() {
             let pairs = of_path.derivative(order).iter_mut().zip(limits);
             pairs.for_each(|(slope, more)| *slope += more);
         }
@@ -128,8 +127,7 @@ impl Excess {
     /// Adds a value with limits of a size on both sides; the slope.
     fn add(&mut self, value: f64, size: f64) -> f64 {
         let beyond = value.abs() / size - SHARE;
-        // Infinite limits and NaN have no excess.
-        if !(beyond > 0.0) {
+        if beyond.is_nan() || beyond <= 0.0 {
             return 0.0;
         }
         self.sum += self.weight * beyond * beyond;

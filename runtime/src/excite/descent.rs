@@ -31,7 +31,7 @@ pub(super) fn descend(function: &impl Function, start: Vec<f64>, steps: usize) -
     for _ in 0..steps {
         let mut direction = newton(&memory, &slopes);
         let mut descent = dot(&direction, &slopes);
-        if !(descent < 0.0) {
+        if descent.is_nan() || descent >= 0.0 {
             memory.clear();
             direction = newton(&memory, &slopes);
             descent = dot(&direction, &slopes);

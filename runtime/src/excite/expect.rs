@@ -48,7 +48,7 @@ pub(super) fn gram(regressor: &Regressor<'_>, path: &Path, columns: usize) -> Ma
 pub(super) fn inverse(gram: &Mat<f64>) -> Option<(Vec<f64>, Vec<f64>)> {
     let n = gram.nrows();
     let norm: Vec<f64> = (0..n).map(|i| gram[(i, i)].sqrt()).collect();
-    if norm.iter().any(|norm| !(*norm > 0.0)) {
+    if !norm.iter().all(|norm| *norm > 0.0) {
         return None;
     }
     let unit = Mat::from_fn(n, n, |i, k| gram[(i, k)] / (norm[i] * norm[k]));
