@@ -110,21 +110,6 @@ const BOX: [[f64; 6]; 2] = [
     [PI, -1.3707963, 1.7707963, -0.3707963, -0.0707963, 1.2],
 ];
 
-/// The same box with half the velocities and accelerations of the robot, as config/
-/// ur10_unified_config.yaml has it.
-fn halved() -> Case {
-    Case {
-        name: "UR10, 36 parameters, 24 s, 12 numbers a joint, its box, half its speeds",
-        limits: limits(
-            BOX[0],
-            BOX[1],
-            [1.0471976, 1.0471976, 0.5 * PI, 0.5 * PI, 0.5 * PI, 0.5 * PI],
-            [20.0; 6],
-        ),
-        ..waypoints()
-    }
-}
-
 /// The same box; no joint faster than it is in the published motion, nor with more acceleration
 /// (natural splines through its points).
 fn waypoints() -> Case {
@@ -189,7 +174,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1).map(|text| text.parse::<usize>());
     let starts = arguments.next().transpose()?.unwrap_or(16);
     let steps = arguments.next().transpose()?.unwrap_or(400);
-    for case in [fixture(), halved(), waypoints(), ur10e(), puma()] {
+    for case in [fixture(), waypoints(), ur10e(), puma()] {
         let (file, text) = &case.robot;
         let model = Interpreter::new(&builder::read_texts(&[(file, text)])?);
         let task = Task {
