@@ -7,6 +7,12 @@ use super::linear::dot;
 /// Order of the autoregression; 4 was enough for a low-pass of 50 Hz.
 pub(crate) const ORDER: usize = 4;
 
+/// No drive tells its torque better than this share of its usual size.
+const LEAST: f64 = 1e-3;
+
+/// Rows after which an impulse is forgotten.
+const REMEMBERED: usize = 500;
+
 /// Noise of one joint: \\( x_t = \sum_k a_k x_{t-k} + \sigma e_t \\).
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Noise {
@@ -37,6 +43,30 @@ impl Noise {
         Noise {
             ar,
             sigma: positive(sigma),
+        }
+    }
+
+    /// Standard deviation of what it makes.
+    fn size(&self) -> f64 {
+        // The response to one impulse, until it has died away.
+        let (mut past, mut energy) = ([0.0; ORDER], 0.0);
+        let mut next = 1.0;
+        for _ in 0..REMEMBERED {
+            energy += next * next;
+            past.rotate_right(1);
+            past[0] = next;
+            next = self.ar.iter().zip(past).map(|(a, x)| a * x).sum();
+        }
+        self.sigma * energy.sqrt()
+    }
+
+    /// This noise, or white noise of the least size that torque `y` can have: a simulation without
+    /// any must not make every rounding of it an effect.
+    pub fn credible(self, y: &[f64]) -> Noise {
+        let least = LEAST * (dot(y, y) / y.len().max(1) as f64).sqrt();
+        match self.size() < least {
+            true => Noise::white(least),
+            false => self,
         }
     }
 
@@ -144,6 +174,17 @@ pub(crate) fn of_rows(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn noise_below_what_a_drive_can_tell_is_that() {
+        let y = [3.0, -4.0, 5.0, 0.0];
+        let rms = 50f64.sqrt() / 2.0;
+        assert_eq!(Noise::white(1e-9).credible(&y), Noise::white(1e-3 * rms));
+        // Of innovations far smaller than itself: an AR(1) with 0.99 is seven times as large.
+        let slow = Noise::reflected(&[0.99, 0.0, 0.0, 0.0], 2e-4 * rms);
+        assert_eq!(slow.clone().credible(&y), slow);
+        assert!((slow.size() / slow.sigma - (1.0_f64 - 0.99 * 0.99).sqrt().recip()).abs() < 1e-3);
+    }
 
     /// Uniform noise from a linear congruence; its colour is what matters.
     fn coloured(ar: [f64; ORDER], len: usize) -> Vec<f64> {

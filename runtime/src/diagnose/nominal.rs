@@ -86,10 +86,12 @@ impl Nominal<'_> {
         let mut noise = unknown_noise(joined);
         let free = free_columns(model, instruments, self.values);
         for (joint, noise) in noise.iter_mut().enumerate() {
-            let mut left = joined.measured(joint);
+            let y = joined.measured(joint);
+            let mut left = y.clone();
             add_scaled(&mut left, -1.0, &product[joint]);
             let weights = &joined.weights[joint];
-            *noise = likelihood::noise(&free[joint], &left, weights, &joined.segments);
+            let found = likelihood::noise(&free[joint], &left, weights, &joined.segments);
+            *noise = found.credible(&y);
         }
         let whiten = |(joint, columns): (usize, Vec<Vec<f64>>)| -> Vec<Sparse> {
             let column = |rows: Vec<f64>| joined.whiten(&[(joint, rows)], &noise);

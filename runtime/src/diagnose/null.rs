@@ -116,7 +116,7 @@ pub(super) fn null(
                 .map(|(y, wx)| y - wx)
                 .collect();
             let weights = &joined.weights[joint];
-            *noise = if repeats.is_empty() {
+            let found = if repeats.is_empty() {
                 likelihood::noise(&generic[joint], &residual, weights, &joined.segments)
             } else {
                 let error = pure_error(&residual, weights, &repeats);
@@ -130,6 +130,7 @@ pub(super) fn null(
                 }
                 of_rows(&left, &error.weights, &joined.segments, 1.0)
             };
+            *noise = found.credible(&y);
         }
         system = fit(model, (joined, instruments), &noise, prior);
     }
