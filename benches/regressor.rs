@@ -15,8 +15,8 @@ use idim::robots;
 use idim::runtime::batch::Block;
 use idim::runtime::model::{IdentificationModel, Output, States};
 
-/// Samples of one pass: 32 kB of signals for each 16 of them stay in the second cache.
-const SAMPLES: usize = 256;
+/// Samples of one pass, as many as the identification evaluates at once.
+const SAMPLES: usize = 384;
 
 /// Samples of a [`Block`].
 const LANES: usize = 4;
