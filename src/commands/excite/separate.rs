@@ -129,7 +129,8 @@ fn asked(robot: &Robot, catalogue: &Effects, item: &str) -> Result<Asked, Failur
 
 /// A joint by its number, from 1, or its name; counted from 0.
 fn joint_of(robot: &Robot, text: &str) -> Result<usize, Failure> {
-    let joints = &robot.mechanism.joints;
+    let driven = robot.mechanism.driven;
+    let joints = &robot.mechanism.joints[..driven];
     let number = text.parse::<usize>().ok().and_then(|k| k.checked_sub(1));
     let named = || joints.iter().position(|joint| joint.name == text);
     let found = number.or_else(named).filter(|joint| *joint < joints.len());
