@@ -53,9 +53,7 @@ fn written(index: usize, joint: &Joint) -> String {
         (JointKind::Revolute, range) => ("revolute", range),
         (JointKind::Prismatic, range) => ("prismatic", Some(range.unwrap_or((-RANGE, RANGE)))),
     };
-    let range = range.map_or(String::new(), |(lower, upper)| {
-        format!(" lower=\"{lower}\" upper=\"{upper}\"")
-    });
+    let limit = limit(range, limits.effort, limits.velocity);
     let parent = joint.parent.map_or("base_link".into(), link_name);
     let turn = standing(joint) * turned(joint);
     let (roll, pitch, yaw) = Rotation3::from_matrix_unchecked(turn).euler_angles();
@@ -63,15 +61,26 @@ fn written(index: usize, joint: &Joint) -> String {
     let exact = |angle: f64| Angle::radians(angle).snapped(1e-12).value();
     format!(
         "  <joint name=\"{}\" type=\"{kind}\">\n    <origin xyz=\"{}\" rpy=\"{}\"/>\n    \
-         <parent link=\"{parent}\"/>\n    <child link=\"{}\"/>\n    <axis xyz=\"0 0 1\"/>\n    \
-         <limit{range} effort=\"{}\" velocity=\"{}\"/>\n  </joint>\n",
+         <parent link=\"{parent}\"/>\n    <child link=\"{}\"/>\n    <axis xyz=\"0 0 1\"/>\n\
+         {limit}  </joint>\n",
         joint.name,
         triple(joint.position),
         triple([roll, pitch, yaw].map(exact)),
         link_name(index),
-        limits.effort.unwrap_or(0.0),
-        limits.velocity.unwrap_or(0.0),
     )
+}
+
+/// `<limit>`, where there is anything to say. With a range, a URDF must state effort and velocity:
+/// zero stands for one that is not described.
+fn limit(range: Option<(f64, f64)>, effort: Option<f64>, velocity: Option<f64>) -> String {
+    if range.is_none() && effort.is_none() && velocity.is_none() {
+        return String::new();
+    }
+    let range = range.map_or(String::new(), |(lower, upper)| {
+        format!(" lower=\"{lower}\" upper=\"{upper}\"")
+    });
+    let (effort, velocity) = (effort.unwrap_or(0.0), velocity.unwrap_or(0.0));
+    format!("    <limit{range} effort=\"{effort}\" velocity=\"{velocity}\"/>\n")
 }
 
 /// From the antecedent's axes to the joint's at q = 0.
