@@ -358,6 +358,16 @@ fn what_cannot_be_exported_is_said() {
         negative,
         Err(ExportError::Physical(PhysicalError::Value { .. }))
     ));
+    let linked = format!(
+        "{}<link name=\"finger\"/><joint name=\"grip\" type=\"continuous\"><parent link=\"lower\"/>\
+         <child link=\"finger\"/><mimic joint=\"elbow\"/></joint></robot>",
+        ARM.trim_end_matches("</robot>")
+    );
+    let follower = builder::read_texts(&[("arm.urdf", linked.as_str())]).unwrap();
+    match export(&follower, None, &identified, &fill()) {
+        Err(ExportError::Follows(joints)) => assert_eq!(joints, ["`grip`"]),
+        other => panic!("{other:?}"),
+    }
     let longer = ARM.replace("0 0 0.4", "0 0 0.5");
     let other = export(&robot, Some(&longer), &identified, &fill());
     assert!(matches!(other, Err(ExportError::Other(_))));

@@ -87,6 +87,13 @@ pub enum ExportError {
          `urdf = ` this file"
     )]
     Other(String),
+    /// Joints that follow others, which a new URDF has no words for.
+    #[error(
+        "{} follow other joints, and a new URDF would let them hang loose; name the robot's own with \
+         --urdf",
+        .0.join(", ")
+    )]
+    Follows(Vec<String>),
     /// Links that move and have no inertia to begin with.
     #[error(
         "no inertia is described for what moves with {}: the log says nothing of some of its \
@@ -124,6 +131,11 @@ pub fn export(
         .as_ref()
         .map_or(&robot.mechanism, |read| &read.mechanism);
     same_frames(&robot.mechanism, carrier)?;
+    let following = &carrier.joints[carrier.driven..];
+    if urdf.is_none() && !following.is_empty() {
+        let names = following.iter().map(|joint| format!("`{}`", joint.name));
+        return Err(ExportError::Follows(names.collect()));
+    }
     let unknowns = unknowns::Unknowns::of(robot, carrier, options)?;
     let bodies = unknowns.problem(robot, identified, options)?.solve()?;
     let links: Vec<Standard> = bodies
@@ -185,7 +197,7 @@ fn same_frames(identified: &Mechanism, carrier: &Mechanism) -> Result<(), Export
 fn reads_back(text: &str, links: &[Standard]) -> Result<(), ExportError> {
     let read = builder::read_texts(&[("robot.urdf", text)])?;
     for (number, (joint, wanted)) in read.mechanism.joints.iter().zip(links).enumerate() {
-        let found = share::together(joint);
+        let found = joint.carried();
         let size = wanted.inertia.trace() + wanted.moment.norm() + wanted.mass;
         let pairs = found.values().into_iter().zip(wanted.values());
         if pairs

@@ -6,12 +6,6 @@ use idim_codegen::mechanism::{Body, Joint, Mechanism, Standard};
 use idim_runtime::physical::Pseudo;
 use nalgebra::Matrix4;
 
-/// All bodies that move with a joint as one, in the link's frame.
-pub fn together(joint: &Joint) -> Standard {
-    let bodies = joint.bodies.iter().filter_map(|body| body.inertial);
-    bodies.fold(Standard::zero(), |sum, body| sum.plus(&body))
-}
-
 /// The inertial values of every described body that has a mass, so that those which move together
 /// come to the given links.
 ///
@@ -107,7 +101,7 @@ mod tests {
             assert!((a - b).abs() < 1e-13);
         }
         // As described, the shares are the described bodies.
-        for (name, inertial) in of_link(joint, &together(joint)) {
+        for (name, inertial) in of_link(joint, &joint.carried()) {
             let mass = if name == "arm" { 2.0 } else { 0.5 };
             assert!((inertial.mass - mass).abs() < 1e-12);
         }

@@ -1,11 +1,11 @@
 //! The standard parameters behind the base parameters, and where each begins.
 
 use idim_codegen::Robot;
-use idim_codegen::mechanism::inertia::NAMES;
+use idim_codegen::knowledge;
 use idim_codegen::mechanism::{Joint, Mechanism};
 use idim_runtime::physical::{Known, Prior, Problem, Pseudo, Scalar};
 
-use super::{ExportError, Identified, Options, share};
+use super::{ExportError, Identified, Options};
 
 /// Standard deviation of a mass that is stated, as a share of it.
 const STATED: f64 = 1e-4;
@@ -96,10 +96,7 @@ impl Unknowns {
 
 /// Place of an inertial parameter such as `XX3` among the unknowns.
 fn inertial(name: &str) -> Option<usize> {
-    let symbol = name.trim_end_matches(|c: char| c.is_ascii_digit());
-    let place = NAMES.iter().position(|known| *known == symbol)?;
-    let number: usize = name[symbol.len()..].parse().ok()?;
-    Some(10 * number.checked_sub(1)? + place)
+    knowledge::inertial(name).map(|(link, place)| 10 * link + place)
 }
 
 /// What stands in the relations beside inertial parameters, each once. Rotor inertias are
@@ -152,7 +149,7 @@ fn links(
     let mut links = Vec::with_capacity(mechanism.joints.len());
     let mut missing = Vec::new();
     for (index, joint) in mechanism.joints.iter().enumerate() {
-        let described = Prior::of(&share::together(joint).values());
+        let described = Prior::of(&joint.carried().values());
         match described {
             Some(prior) => {
                 if prior.mended {

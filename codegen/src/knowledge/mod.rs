@@ -69,8 +69,8 @@ impl Knowledge {
     }
 }
 
-/// Link and place of a standard inertial parameter such as `XX3`.
-fn inertial(name: &str) -> Option<(usize, usize)> {
+/// Link (from 0) of a standard inertial parameter such as `XX3`, and its place in [`NAMES`].
+pub fn inertial(name: &str) -> Option<(usize, usize)> {
     let symbol = name.trim_end_matches(|c: char| c.is_ascii_digit());
     let parameter = NAMES.iter().position(|known| *known == symbol)?;
     let number: usize = name[symbol.len()..].parse().ok()?;

@@ -69,6 +69,15 @@ pub struct Joint {
     pub bodies: Vec<Body>,
 }
 
+impl Joint {
+    /// All described bodies that move with the joint as one, in the link's frame; without mass if
+    /// none is described.
+    pub fn carried(&self) -> Standard {
+        let bodies = self.bodies.iter().filter_map(|body| body.inertial);
+        bodies.fold(Standard::zero(), |sum, body| sum.plus(&body))
+    }
+}
+
 /// A body of the description (a URDF link) as part of a link of the mechanism.
 #[derive(Clone, Debug)]
 pub struct Body {

@@ -1,6 +1,9 @@
 //! Rounding that repeats: where a motion comes back exactly, its encoders make the same errors in
 //! every period, and what differs between periods does not show them.
 
+use rand_pcg::Pcg64Mcg;
+use rand_pcg::rand_core::Rng;
+
 use super::joined::Joined;
 use super::repeats::{find, own_noise};
 use super::track::{Instead, Track};
@@ -49,14 +52,8 @@ impl Rounding {
 
 /// Positions with an error that is uniform over a step of their encoder.
 fn rounded_again(track: &Track) -> Vec<Vec<f64>> {
-    // Knuth's congruence; its upper half is random enough to be filtered.
-    let mut state = 1_u64;
-    let mut uniform = || {
-        state = state
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (state >> 32) as f64 / f64::from(u32::MAX) - 0.5
-    };
+    let mut generator = Pcg64Mcg::new(1);
+    let mut uniform = || generator.next_u64() as f64 / u64::MAX as f64 - 0.5;
     let joints = track.source.recording.q.iter().zip(&track.steps);
     let moved = |(q, step): (&Vec<f64>, &f64)| q.iter().map(|q| q + step * uniform()).collect();
     joints.map(moved).collect()

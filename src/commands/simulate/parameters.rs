@@ -6,7 +6,6 @@ use std::path::Path;
 use idim::codegen::Robot;
 use idim::codegen::base::BaseParameter;
 use idim::codegen::derive::ParameterKind;
-use idim::codegen::mechanism::Standard;
 use idim::codegen::mechanism::inertia::NAMES;
 use idim::runtime::model::IdentificationModel;
 use idim::runtime::simulate::{SimulateError, in_order, named_values};
@@ -108,12 +107,7 @@ fn described(robot: &Robot) -> Values {
     }
     let mut values = Values::new();
     for (index, joint) in joints.iter().enumerate() {
-        let bodies = joint
-            .bodies
-            .iter()
-            .filter_map(|body| body.inertial.as_ref());
-        let link = bodies.fold(Standard::zero(), |sum, body| sum.plus(body));
-        for (name, value) in NAMES.iter().zip(link.values()) {
+        for (name, value) in NAMES.iter().zip(joint.carried().values()) {
             values.insert(format!("{name}{}", index + 1), value);
         }
     }

@@ -38,13 +38,8 @@ fn body(mass: f64, com: [f64; 3], j: [f64; 3]) -> Standard {
 }
 
 fn values(mechanism: &Mechanism) -> Vec<[f64; 10]> {
-    let sum = |joint: &crate::mechanism::Joint| {
-        let bodies = joint.bodies.iter().filter_map(|body| body.inertial);
-        bodies
-            .fold(Standard::zero(), |sum, body| sum.plus(&body))
-            .values()
-    };
-    mechanism.joints.iter().map(sum).collect()
+    let joints = mechanism.joints.iter();
+    joints.map(|joint| joint.carried().values()).collect()
 }
 
 #[test]
