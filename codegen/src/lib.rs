@@ -16,6 +16,7 @@ pub mod functions;
 pub mod knowledge;
 pub mod mechanism;
 pub mod placement;
+pub mod rewrite;
 pub mod robot;
 pub mod source;
 

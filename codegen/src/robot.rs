@@ -7,7 +7,7 @@ use crate::describe::Description;
 use crate::expr::{Expr, Graph, Operations};
 use crate::functions::{self, Function, Group};
 use crate::mechanism::Mechanism;
-use crate::placement;
+use crate::{placement, rewrite};
 
 /// One non-zero entry of an output.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -103,6 +103,7 @@ impl Robot {
         let standard = standard.parameters;
         let mut base = base::parameters(&mut graph, &mechanism, standard, &description)?;
         placement::cheapest(&mut graph, &mechanism, &mut motions, &mut base.parameters);
+        rewrite::fewer(&mut graph, &mut base.parameters);
         Ok(Robot {
             description,
             mechanism,

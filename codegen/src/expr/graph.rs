@@ -16,6 +16,14 @@ pub struct Expr {
 }
 
 impl Expr {
+    /// The node of an index.
+    pub(super) fn of(node: usize) -> Expr {
+        Expr {
+            node: node as u32,
+            negative: false,
+        }
+    }
+
     /// Index of the node in the arena.
     pub fn node(self) -> usize {
         self.node as usize
@@ -34,7 +42,8 @@ impl Expr {
         }
     }
 
-    fn signed(self, negative: bool) -> Expr {
+    /// The same, or its negative.
+    pub(super) fn signed(self, negative: bool) -> Expr {
         Expr {
             negative: self.negative ^ negative,
             ..self
@@ -185,6 +194,17 @@ impl Graph {
         self.names
             .entry(x.node)
             .or_insert_with(|| format!("{prefix}{name}"));
+    }
+
+    /// Gives a value the name of the node that it takes the place of.
+    pub fn rename(&mut self, node: usize, x: Expr) {
+        let Some(name) = self.name_of(node).map(str::to_owned) else {
+            return;
+        };
+        match name.strip_prefix("neg_") {
+            Some(name) => self.name(-x, name),
+            None => self.name(x, &name),
+        }
     }
 
     /// What the positive node of an expression was named.

@@ -7,8 +7,11 @@ pub mod angle;
 pub mod count;
 pub mod derivative;
 pub mod graph;
+pub mod needs;
+pub mod residue;
 pub mod rotate;
 pub mod schedule;
+pub mod substitute;
 pub mod tape;
 
 pub use angle::{Angle, AngleSum};

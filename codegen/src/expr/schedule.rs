@@ -31,7 +31,12 @@ pub fn uses(graph: &Graph, outputs: &[Expr]) -> Vec<usize> {
 /// The nodes needed for the outputs, depth first from each output in turn: a value is computed
 /// shortly before its first use, and an output can be stored as soon as it is known.
 pub fn order(graph: &Graph, outputs: &[Expr]) -> Vec<usize> {
-    let mut seen = vec![false; graph.nodes().len()];
+    order_among(graph.nodes(), outputs)
+}
+
+/// The same where operands may have any index.
+pub fn order_among(nodes: &[Node], outputs: &[Expr]) -> Vec<usize> {
+    let mut seen = vec![false; nodes.len()];
     let mut order = Vec::new();
     let mut stack = Vec::new();
     for output in outputs {
@@ -43,7 +48,7 @@ pub fn order(graph: &Graph, outputs: &[Expr]) -> Vec<usize> {
                 seen[index] = true;
                 stack.push((index, true));
                 // Later operands first: the stack turns the order round.
-                let mut list: Vec<_> = operands(graph.nodes()[index]).collect();
+                let mut list: Vec<_> = operands(nodes[index]).collect();
                 list.reverse();
                 stack.extend(list.into_iter().map(|operand| (operand.node(), false)));
             }

@@ -1,6 +1,7 @@
 //! The choice of one form for every entry so that together they need the fewest operations.
 
-use crate::expr::{Expr, Graph, Node, schedule};
+use crate::expr::needs::Needs;
+use crate::expr::{Expr, Graph};
 
 /// An entry that may be computed in several ways.
 #[derive(Clone, Debug)]
@@ -24,12 +25,12 @@ pub fn choose(graph: &Graph, entries: &[Entry]) -> Vec<usize> {
     let mut search = Search::new(graph, entries);
     let moves = moves(entries);
     for _ in 0..ROUNDS {
-        let before = search.cost;
+        let before = search.needs.cost;
         for (group, form) in &moves {
             search.attempt(group, *form, Reach::There);
             search.attempt(group, *form, Reach::Last);
         }
-        if search.cost == before {
+        if search.needs.cost == before {
             break;
         }
     }
@@ -78,8 +79,7 @@ struct Search<'a> {
     graph: &'a Graph,
     entries: &'a [Entry],
     chosen: Vec<usize>,
-    uses: Vec<u32>,
-    cost: usize,
+    needs: Needs,
 }
 
 impl<'a> Search<'a> {
@@ -88,18 +88,17 @@ impl<'a> Search<'a> {
             graph,
             entries,
             chosen: vec![0; entries.len()],
-            uses: vec![0; graph.nodes().len()],
-            cost: 0,
+            needs: Needs::none(graph.nodes().len()),
         };
         for entry in entries {
-            search.need(entry.forms[0].node());
+            search.needs.need(graph.nodes(), entry.forms[0].node());
         }
         search
     }
 
     /// Gives the group a form where it has it; undone unless that saves operations.
     fn attempt(&mut self, group: &[usize], form: usize, reach: Reach) {
-        let before = self.cost;
+        let before = self.needs.cost;
         let mut changed = vec![];
         for &index in group {
             let (entry, old) = (&self.entries[index], self.chosen[index]);
@@ -114,7 +113,7 @@ impl<'a> Search<'a> {
                 self.give(index, form);
             }
         }
-        if self.cost >= before {
+        if self.needs.cost >= before {
             for (index, old) in changed {
                 self.give(index, old);
             }
@@ -122,37 +121,9 @@ impl<'a> Search<'a> {
     }
 
     fn give(&mut self, index: usize, form: usize) {
-        let forms = &self.entries[index].forms;
-        self.need(forms[form].node());
-        self.release(forms[self.chosen[index]].node());
+        let (forms, nodes) = (&self.entries[index].forms, self.graph.nodes());
+        self.needs.need(nodes, forms[form].node());
+        self.needs.release(nodes, forms[self.chosen[index]].node());
         self.chosen[index] = form;
-    }
-
-    fn need(&mut self, node: usize) {
-        self.uses[node] += 1;
-        if self.uses[node] == 1 {
-            self.cost += self.price(node);
-            for operand in schedule::operands(self.graph.nodes()[node]) {
-                self.need(operand.node());
-            }
-        }
-    }
-
-    fn release(&mut self, node: usize) {
-        self.uses[node] -= 1;
-        if self.uses[node] == 0 {
-            self.cost -= self.price(node);
-            for operand in schedule::operands(self.graph.nodes()[node]) {
-                self.release(operand.node());
-            }
-        }
-    }
-
-    fn price(&self, node: usize) -> usize {
-        let operation = matches!(
-            self.graph.nodes()[node],
-            Node::Add(..) | Node::Sub(..) | Node::Mul(..)
-        );
-        usize::from(operation)
     }
 }
