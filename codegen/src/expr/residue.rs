@@ -51,6 +51,11 @@ impl Residue {
         if negative { -self } else { self }
     }
 
+    /// The number itself, 0 to p - 1.
+    pub fn bits(self) -> u64 {
+        self.0
+    }
+
     /// What a number and its negative have in common.
     pub fn magnitude(self) -> u64 {
         self.0.min((-self).0)

@@ -8,7 +8,6 @@
 //! synthesis").
 
 use std::collections::HashMap;
-use std::hash::{BuildHasherDefault, Hasher};
 
 use super::graph::{Expr, Graph, Input, Node};
 use super::needs::{Needs, price};
@@ -19,7 +18,7 @@ use super::schedule::{operands, order_among};
 /// before; one that is zero everywhere becomes the constant.
 pub fn substitute(graph: &mut Graph, outputs: &mut [Expr]) {
     let mut rewriting = Rewriting::new(graph, outputs);
-    while rewriting.sweep() {}
+    rewriting.sweep();
     rewriting.write(graph, outputs);
 }
 
@@ -35,7 +34,8 @@ struct Rewriting {
     /// The joints whose state a node depends on, a bit each.
     joints: Vec<u64>,
     /// The node of each value or its negative.
-    known: HashMap<u64, usize, BuildHasherDefault<Itself>>,
+    known: HashMap<u64, usize>,
+    sieve: Sieve,
 }
 
 impl Rewriting {
@@ -48,7 +48,8 @@ impl Rewriting {
             values: residues(graph),
             over: vec![Residue::ZERO; count],
             joints: joints(graph),
-            known: HashMap::default(),
+            known: HashMap::new(),
+            sieve: Sieve::default(),
         };
         rewriting.merge(graph, outputs);
         for output in &rewriting.outputs {
@@ -68,6 +69,7 @@ impl Rewriting {
             self.over[node] = value.reciprocal();
         }
         self.outputs = outputs.iter().map(|&output| self.first(output)).collect();
+        self.sieve = Sieve::of(self.known.values().map(|&node| self.values[node]));
     }
 
     /// The known node of an expression's value.
@@ -81,20 +83,19 @@ impl Rewriting {
         Some(Expr::of(node).signed(self.values[node] != value))
     }
 
-    /// Tries all needed nodes; whether that saved anything.
-    fn sweep(&mut self) -> bool {
-        let before = self.needs.cost;
-        let mut order = order_among(&self.nodes, &self.outputs);
-        for node in order.clone() {
+    /// Tries all needed nodes, the outputs first: what a node spares its operands no longer share.
+    /// A second time finds nothing on any arm that was counted.
+    fn sweep(&mut self) {
+        let mut order = Order::new(&self.nodes, &self.outputs);
+        for node in order.nodes.clone().into_iter().rev() {
             if self.needs.has(node) && self.shorten(node, &order) {
-                order = order_among(&self.nodes, &self.outputs);
+                order = Order::new(&self.nodes, &self.outputs);
             }
         }
-        self.needs.cost < before
     }
 
     /// Computes a node by one operation if that spares any that it alone needs.
-    fn shorten(&mut self, node: usize, order: &[usize]) -> bool {
+    fn shorten(&mut self, node: usize, order: &Order) -> bool {
         let (old, before) = (self.nodes[node], self.needs.cost);
         if price(old) == 0 {
             return false;
@@ -112,33 +113,26 @@ impl Rewriting {
     }
 
     /// One operation on needed nodes that has the value of `node`.
-    fn find(&self, node: usize, order: &[usize]) -> Option<Node> {
-        let above = self.above(node, order);
+    fn find(&self, node: usize, order: &Order) -> Option<Node> {
+        let above = order.above(&self.nodes, node);
         let foreign = !self.joints[node];
         let at_hand = |x: usize| self.needs.has(x) || price(self.nodes[x]) == 0;
-        let usable = |x: usize| at_hand(x) && !above[x] && self.joints[x] & foreign == 0;
-        let having = |value| self.having(value).filter(|y: &Expr| usable(y.node()));
+        let usable =
+            |x: usize| self.joints[x] & foreign == 0 && at_hand(x) && !above[order.place[x]];
+        let having = |value: Residue| -> Option<Expr> {
+            let found = self.sieve.may_hold(value).then(|| self.having(value));
+            found.flatten().filter(|y| usable(y.node()))
+        };
         let value = self.values[node];
-        let mut candidates = order
-            .iter()
-            .filter(|&&x| usable(x) && self.values[x] != Residue::ZERO);
-        candidates.find_map(|&x| {
+        let operands = order.nodes.iter().filter(|&&x| usable(x));
+        let mut operands = operands.filter(|&&x| self.values[x] != Residue::ZERO);
+        operands.find_map(|&x| {
             let (a, own) = (Expr::of(x), self.values[x]);
             let sum = having(value - own).map(|b| Node::Add(a, b));
             let difference = || having(value + own).map(|b| Node::Sub(b, a));
             let product = || having(value * self.over[x]).map(|b| Node::Mul(a, b));
             sum.or_else(difference).or_else(product)
         })
-    }
-
-    /// Which nodes are computed from `node`; it counts as one of them.
-    fn above(&self, node: usize, order: &[usize]) -> Vec<bool> {
-        let mut above = vec![false; self.nodes.len()];
-        above[node] = true;
-        for &other in order {
-            above[other] |= operands(self.nodes[other]).any(|operand| above[operand.node()]);
-        }
-        above
     }
 
     /// Writes what has changed into the graph.
@@ -192,22 +186,65 @@ fn joints(graph: &Graph) -> Vec<u64> {
     joints
 }
 
-/// Residues are random already.
-#[derive(Default)]
-struct Itself(u64);
+/// An order of computation.
+struct Order {
+    nodes: Vec<usize>,
+    /// The place of each node in it; the end if it is not needed.
+    place: Vec<usize>,
+}
 
-impl Hasher for Itself {
-    fn finish(&self) -> u64 {
-        // The table looks at the highest bits too, of which a residue has three less.
-        self.0 << 3 | self.0 >> 58
-    }
-    fn write(&mut self, bytes: &[u8]) {
-        for &byte in bytes {
-            self.write_u64(self.0.rotate_left(8) ^ u64::from(byte));
+impl Order {
+    fn new(nodes: &[Node], outputs: &[Expr]) -> Order {
+        let order = order_among(nodes, outputs);
+        let mut place = vec![order.len(); nodes.len()];
+        for (index, &node) in order.iter().enumerate() {
+            place[node] = index;
+        }
+        Order {
+            nodes: order,
+            place,
         }
     }
-    fn write_u64(&mut self, number: u64) {
-        self.0 = number;
+
+    /// Which places hold `node` or what is computed from it; the end holds nothing.
+    fn above(&self, nodes: &[Node], node: usize) -> Vec<bool> {
+        let mut above = vec![false; self.nodes.len() + 1];
+        let own = self.place[node];
+        above[own] = true;
+        for place in own + 1..self.nodes.len() {
+            let mut operands = operands(nodes[self.nodes[place]]);
+            above[place] = operands.any(|operand| above[self.place[operand.node()]]);
+        }
+        above
+    }
+}
+
+/// Says quickly of most values that they are not among some: a bit each of a word per value, so
+/// that it stays in the fastest memory and lets one in 32 pass.
+#[derive(Default)]
+struct Sieve {
+    bits: Vec<u64>,
+}
+
+impl Sieve {
+    /// Of values and their negatives.
+    fn of(values: impl ExactSizeIterator<Item = Residue>) -> Sieve {
+        let mut bits = vec![0; values.len().next_power_of_two()];
+        for value in values.flat_map(|value| [value, -value]) {
+            let (word, bit) = Self::place(&bits, value);
+            bits[word] |= bit;
+        }
+        Sieve { bits }
+    }
+
+    fn may_hold(&self, value: Residue) -> bool {
+        let (word, bit) = Self::place(&self.bits, value);
+        self.bits[word] & bit != 0
+    }
+
+    fn place(bits: &[u64], value: Residue) -> (usize, u64) {
+        let hash = value.bits();
+        ((hash >> 6) as usize & (bits.len() - 1), 1 << (hash & 63))
     }
 }
 
