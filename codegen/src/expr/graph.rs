@@ -2,7 +2,8 @@
 //!
 //! Signs live on the edges: an [`Expr`] is a node and a sign, so that `-(a*b)` and `a*b` are one
 //! node and a negation costs nothing. Constructors fold 0, 1, -1 and constants, order commutative
-//! operands and merge what is written twice. No later pass is needed.
+//! operands and merge what is written twice. What has two forms that no constructor can see to be
+//! equal is found later, by value ([`substitute`](super::substitute)).
 
 use std::collections::HashMap;
 

@@ -1,7 +1,8 @@
 //! One hash-consed expression graph for all outputs of a robot, and its readers.
 //!
 //! The graph knows no robot: inputs are numbered positions, velocities and accelerations. Its
-//! smart constructors are the optimiser; [`tape`] and the emitters read the same graph.
+//! smart constructors fold and share, [`substitute`] finds shorter forms; [`tape`] and the emitters
+//! read the same graph.
 
 pub mod angle;
 pub mod count;

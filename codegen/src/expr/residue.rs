@@ -3,8 +3,9 @@
 //! Two expressions of different form are the same function of the state if, as polynomials in the
 //! inputs and half-angle tangents, their difference vanishes. One that does not vanish does so at
 //! a random point of the field with probability degree / 2^61 (Schwartz 1980, "Fast probabilistic
-//! algorithms for verification of polynomial identities"). Unlike in floating point there is no
-//! rounding, hence no tolerance: constants are taken for what they are, m * 2^e.
+//! algorithms for verification of polynomial identities"): with all comparisons of a large robot
+//! less than one in 10^8. Unlike in floating point there is no rounding, hence no tolerance:
+//! constants are taken for what they are, m * 2^e.
 
 use std::hash::{DefaultHasher, Hash, Hasher};
 
