@@ -2,7 +2,6 @@
 
 use super::catalogue::EntryKind;
 use super::joined::Joined;
-use super::linear::add_scaled;
 use super::nominal;
 use super::screen::Contender;
 use super::state::State;
@@ -33,6 +32,13 @@ const DECIDES: f64 = 4.0;
 
 /// Standard deviations that some parameter of a change must be from zero.
 const CLEAR: f64 = 3.0;
+
+/// Corrected probability by chance of what training log and confirming motion gain together, below
+/// which an effect without a margin stands.
+const TOGETHER: f64 = 3e-4;
+
+/// Standard deviations by which the gain of such an effect may be short of its promise.
+const SHORT: f64 = 2.0;
 
 /// What an effect did on another motion instead of what it promised.
 #[derive(Clone, Copy, Debug)]
@@ -103,6 +109,18 @@ fn attenuation(along: f64, square: f64) -> f64 {
     }
 }
 
+/// Rows with what others change by.
+fn changed(before: &[Vec<f64>], without: &[Vec<f64>], with: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let of_joint = |(before, change): (&Vec<f64>, (&Vec<f64>, &Vec<f64>))| -> Vec<f64> {
+        let change = change.0.iter().zip(change.1);
+        let rows = before.iter().zip(change);
+        rows.map(|(b, (without, with))| b + with - without)
+            .collect()
+    };
+    let changes = without.iter().zip(with);
+    before.iter().zip(changes).map(of_joint).collect()
+}
+
 /// Rows a share of the way from some to others.
 fn between(before: &[Vec<f64>], after: &[Vec<f64>], share: f64) -> Vec<Vec<f64>> {
     let of_joint = |(before, after): (&Vec<f64>, &Vec<f64>)| -> Vec<f64> {
@@ -154,21 +172,38 @@ impl Stepwise<'_> {
             let change = (share * along, share * share * square);
             kept(confirm, &joints, (&before, &after), change, hidden)
         };
-        // Along the measured motion, or, where its noise drowns the columns, along one without.
         let after = self.bench.rows(&next, confirm);
+        let smooth = || {
+            let [without, with] = [state, &next].map(|state| self.bench.rows(state, beside));
+            changed(&before, &without, &with)
+        };
+        if contender.margin <= 0.0 {
+            let change = |after: &[Vec<f64>]| self.bench.difference(confirm, (&before, after));
+            self.settles(contender, [change(&after), change(&smooth())])?;
+        }
+        // Along the measured motion, or, where its noise drowns the columns, along one without.
         kept(&after)
-            .or_else(|broken| {
-                let mut after = before.clone();
-                let without = self.bench.rows(state, beside);
-                let with = self.bench.rows(&next, beside);
-                for (sum, (with, without)) in after.iter_mut().zip(with.iter().zip(&without)) {
-                    add_scaled(sum, 1.0, with);
-                    add_scaled(sum, -1.0, without);
-                }
-                kept(&after).map_err(|_| broken)
-            })
+            .or_else(|broken| kept(&smooth()).map_err(|_| broken))
             .map(|()| next)
             .map_err(|broken| broken.why(contender.gain.square))
+    }
+
+    /// Whether another motion settles what the training log alone leaves open: what it gains is what
+    /// was promised, along the measured motion as along one without noise, and chance does not gain
+    /// as much on both. `changes`: products with the residual, and squares.
+    fn settles(&self, contender: &Contender, changes: [(f64, f64); 2]) -> Result<(), String> {
+        let short = |&(along, square): &(f64, f64)| along < square - SHORT * square.sqrt();
+        let gained = changes.map(|(along, square)| 2.0 * along - square);
+        let together = contender.gain.square + gained[0].min(gained[1]);
+        let likely = self.by_chance(together, contender.freedom);
+        match changes.iter().any(short) || likely > TOGETHER {
+            false => Ok(()),
+            true => Err(format!(
+                "the training log alone does not establish it (gain {:.0}), and the validation log \
+                 does not settle it: {:.0} of {:.0}",
+                contender.gain.square, gained[0], changes[0].1
+            )),
+        }
     }
 
     /// Whether an effect takes enough of the torque error of one of its joints away.

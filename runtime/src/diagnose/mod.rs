@@ -8,6 +8,7 @@
 //! confirmed. This room knows no effect by name; torque never enters a column.
 
 mod absorbed;
+mod bursts;
 mod catalogue;
 mod closed_loop;
 mod confirm;

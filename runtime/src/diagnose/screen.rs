@@ -129,8 +129,13 @@ impl Bench<'_> {
         (gain, freedom, margin)
     }
 
-    /// The best shape of every hypothesis with a margin above `least`, best hypothesis first.
-    pub fn ranking(&self, candidates: &[&Candidate], state: &State, least: f64) -> Vec<Contender> {
+    /// The best shape of every hypothesis that is worth a closer look, best hypothesis first.
+    pub fn ranking(
+        &self,
+        candidates: &[&Candidate],
+        state: &State,
+        worth: impl Fn(&Contender) -> bool,
+    ) -> Vec<Contender> {
         let gains = candidates.par_iter().map(|c| self.gain(c, &state.system));
         let gains: Vec<(Gain, usize, f64)> = gains.collect();
         let mut best: Vec<usize> = Vec::new();
@@ -144,8 +149,7 @@ impl Bench<'_> {
                 _ => best.push(k),
             }
         }
-        best.retain(|&k| gains[k].0.columns() > 0 && gains[k].2 > least);
-        best.sort_by(|a, b| gains[*b].2.total_cmp(&gains[*a].2));
+        best.retain(|&k| gains[k].0.columns() > 0);
         let contender = |k: usize| {
             let (gain, freedom, margin) = gains[k].clone();
             Contender {
@@ -155,7 +159,9 @@ impl Bench<'_> {
                 margin,
             }
         };
-        best.into_iter().map(contender).collect()
+        let mut best: Vec<Contender> = best.into_iter().map(contender).filter(worth).collect();
+        best.sort_by(|a, b| b.margin.total_cmp(&a.margin));
+        best
     }
 
     /// Whitened difference of two predictions along logs, summed: its product with a residual, and

@@ -18,6 +18,14 @@ const CLOSELY: usize = 10;
 /// Margin below zero at which a contender is still refined.
 const NEARLY: f64 = -15.0;
 
+/// Corrected probability by chance below which a contender without a margin may be named, if another
+/// motion settles it. The margin allows for noise that is not as the noise model has it; where two
+/// motions agree, this is not needed.
+const FAINT: f64 = 3e-3;
+
+/// The same before its shape is refined.
+const FAINT_COARSELY: f64 = 0.1;
+
 /// Margin by which another effect must be better to take the place of one.
 const BETTER: f64 = 5.0;
 
@@ -150,7 +158,9 @@ impl<'a> Stepwise<'a> {
         let dependent = self.bench.candidates(&self.dependent, asking);
         let mut candidates: Vec<&Candidate> = self.fixed.iter().chain(&dependent).collect();
         candidates.retain(|candidate| !named.iter().any(|n| n.number == candidate.number));
-        self.bench.ranking(&candidates, state, NEARLY)
+        self.bench.ranking(&candidates, state, |contender| {
+            contender.margin > NEARLY || self.faint(contender, FAINT_COARSELY)
+        })
     }
 
     /// The first contender that nothing speaks against, with those it cannot be told from.
@@ -170,21 +180,19 @@ impl<'a> Stepwise<'a> {
         };
         open.sort_by(|a, b| b.margin.total_cmp(&a.margin));
         self.rank(&open, named.len());
-        open.retain(|contender| contender.margin > least);
-        let mut plausible = Vec::new();
-        for contender in open {
-            match self.implausible(&contender) {
-                Some(why) => self.refuse(contender.candidate.number, why),
-                None => plausible.push(contender),
-            }
-        }
+        open.retain(|contender| contender.margin > least || self.faint(contender, FAINT));
+        let (mut plausible, mut refused) = self.plausible(open, least);
         for place in 0..plausible.len() {
+            if refused && plausible[place].margin <= least {
+                break;
+            }
             if let Some(settled) = self.settled(&plausible[place].candidate, state, named) {
                 plausible[place] = settled;
             }
             let next = match self.confirmed(&plausible[place], state, named) {
                 Ok(next) => next,
                 Err(why) => {
+                    refused |= plausible[place].margin > least;
                     self.refuse(plausible[place].candidate.number, why);
                     continue;
                 }
@@ -200,6 +208,23 @@ impl<'a> Stepwise<'a> {
             return Some((next, found));
         }
         None
+    }
+
+    /// Contenders of plausible sign and size, and whether one with a margin was refused. Where a clear
+    /// explanation is refused, what is left of the gap makes faint ones look true.
+    fn plausible(&mut self, open: Vec<Contender>, least: f64) -> (Vec<Contender>, bool) {
+        let mut plausible = Vec::new();
+        let mut refused = false;
+        for contender in open {
+            match self.implausible(&contender) {
+                Some(why) => {
+                    refused |= contender.margin > least;
+                    self.refuse(contender.candidate.number, why);
+                }
+                None => plausible.push(contender),
+            }
+        }
+        (plausible, refused)
     }
 
     /// Notes what came nearest in a step; a step that is gone through again is noted anew.
@@ -238,10 +263,25 @@ impl<'a> Stepwise<'a> {
         self.bench.catalogue.implausible(hypothesis, shape, &values)
     }
 
-    /// Corrected for the number of hypotheses tried.
+    /// Whether chance alone hardly gains as much, where another motion can settle the rest. Effects
+    /// with a memory and links that yield are made of the noise of the measured motion, too, which
+    /// chance does not know.
+    fn faint(&self, contender: &Contender, likely: f64) -> bool {
+        let kind = self.bench.kind(contender.candidate.number);
+        !matches!(kind, EntryKind::Memory | EntryKind::Yielding)
+            && self.confirm.is_some()
+            && self.p_value(contender) < likely
+    }
+
+    /// Probability that chance gains as much, corrected for the number of hypotheses tried.
     fn p_value(&self, contender: &Contender) -> f64 {
+        self.by_chance(contender.gain.square, contender.freedom)
+    }
+
+    /// The same of any gain.
+    pub(super) fn by_chance(&self, gain: f64, freedom: usize) -> f64 {
         let tried = self.bench.hypotheses.len() as f64;
-        (tried * chi_square_survival(contender.gain.square, contender.freedom)).min(1.0)
+        (tried * chi_square_survival(gain, freedom)).min(1.0)
     }
 
     /// Of the explanations that cannot be told from the best, the simplest; and its rivals.
@@ -305,11 +345,12 @@ impl<'a> Stepwise<'a> {
             let without = self.bench.settle(&chosen, &state.predicted);
             let asking = self.bench.asking(&without.predicted);
             let ranking = self.ranking(&without, &others, &asking);
-            let margin = ranking
+            let stands = ranking
                 .iter()
                 .find(|c| c.candidate.number == own.number)
-                .map(|c| self.bench.refine(c.clone(), &without, &asking).margin);
-            if margin.is_none_or(|margin| margin <= 0.0) {
+                .map(|c| self.bench.refine(c.clone(), &without, &asking))
+                .filter(|c| c.margin > 0.0 || self.faint(c, FAINT));
+            let Some(stands) = stands else {
                 drop(asking);
                 self.refuse(
                     own.number,
@@ -317,9 +358,9 @@ impl<'a> Stepwise<'a> {
                 );
                 (*state, *named, changed) = (without, others, true);
                 continue;
-            }
+            };
             let better = ranking.first().is_some_and(|c| {
-                c.candidate.number != own.number && c.margin > margin.unwrap_or(0.0) + BETTER
+                c.candidate.number != own.number && c.margin > stands.margin.max(0.0) + BETTER
             });
             if !better {
                 continue;

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::absorbed::absorbed;
+use super::bursts;
 use super::catalogue::Hypothesis;
 use super::joined::Joined;
 use super::null::Null;
@@ -39,13 +40,19 @@ pub(super) fn diagnosis(
     let (train, validate) = asked.logs;
     let lacks = verdict::lacks(bench, null, before);
     let left = verdict::lacks(bench, null, &outcome.state);
+    let bursts = match outcome.named.is_empty() && !verdict::open(&lacks) {
+        true => bursts::bursts(bench, before),
+        false => Vec::new(),
+    };
     let verdict = match outcome.named.is_empty() {
-        true if verdict::open(&lacks) => Verdict::Unknown,
+        true if verdict::open(&lacks) || !bursts.is_empty() => Verdict::Unknown,
         true => Verdict::Nothing,
         false if verdict::closed(&lacks, &left) => Verdict::Named,
         false => Verdict::Unknown,
     };
-    let located = verdict::located(bench, &lacks, before);
+    let mut located = verdict::located(bench, &lacks, before);
+    let in_time = |b: &bursts::Bursts| (b.joint, 100.0 * b.share, vec!["time"]);
+    located.extend(bursts.iter().map(in_time));
     let lacking: Vec<usize> = match verdict {
         Verdict::Unknown => located.iter().map(|(joint, ..)| *joint).collect(),
         _ => Vec::new(),
@@ -86,7 +93,11 @@ pub(super) fn diagnosis(
         },
         parameters: refitted(bench, before, &outcome.state),
         changed: None,
-        warnings: doubts::warnings(asked.logs, asked.kept),
+        warnings: [
+            doubts::warnings(asked.logs, asked.kept),
+            bursts.iter().map(|b| b.sentence(bench.model)).collect(),
+        ]
+        .concat(),
         command: None,
         pictures: asked
             .draw
