@@ -65,6 +65,24 @@ fn clear_excess_of_friction_near_rest_is_named() {
 }
 
 #[test]
+fn faint_curve_of_friction_is_named_where_two_motions_agree() {
+    // 6.6 standard deviations, too little on the training log alone.
+    let case = diagnosed(402, 39, "one");
+    assert!(case.right(), "{}", table::line(&case));
+}
+
+#[test]
+fn friction_that_comes_and_goes_is_not_passed_over() {
+    let case = diagnosed(403, 14, "outside");
+    assert_eq!(
+        case.answer.verdict,
+        Verdict::Unknown,
+        "{}",
+        table::line(&case)
+    );
+}
+
+#[test]
 fn case_is_the_same_for_the_same_seed() {
     let [one, other] = [0, 1].map(|_| draw(6, 7, Some("nothing")).unwrap());
     assert_eq!(
