@@ -52,7 +52,7 @@ pub(super) fn lacks(bench: &Bench<'_>, null: &Null, state: &State) -> Vec<Lack> 
     }
     joints
         .map(|joint| {
-            let weights = away_from_rest(&effective_weights(bench, joint));
+            let weights = whole_weights(bench, joint);
             let residual = smoothed(state.system.residual(joint));
             let mut error = pure_error(&residual, &weights, &null.repeats);
             error.repeated.1 *= SMOOTH_FREEDOM;
@@ -77,6 +77,11 @@ fn smoothed(rows: &[f64]) -> Vec<f64> {
         (kernel[0] * rows[t] + sum) / total
     };
     (0..rows.len()).map(at).collect()
+}
+
+/// What the whitened rows of a joint count for, one or nothing: those about a standstill do not.
+pub(super) fn whole_weights(bench: &Bench<'_>, joint: usize) -> Vec<f64> {
+    away_from_rest(&effective_weights(bench, joint))
 }
 
 /// Weights with the rows about those that count for less left out.
