@@ -7,6 +7,11 @@
     reason = "a test fails by panicking"
 )]
 
+#[path = "export/frames.rs"]
+mod frames;
+#[path = "export/friction.rs"]
+mod friction;
+
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 use std::process::Command;

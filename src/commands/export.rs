@@ -5,6 +5,8 @@ mod show;
 
 use std::path::PathBuf;
 
+use idim::codegen::mechanism::Joint;
+use idim::codegen::mechanism::alignment::{Alignment, Displaced};
 use idim::exported::{self, Exported, Options};
 use idim::interpreted::Interpreter;
 use serde::Serialize;
@@ -38,6 +40,9 @@ pub struct Arguments {
     /// Begin with a guess where no inertia is described.
     #[arg(long)]
     fill: bool,
+    /// Write viscous and Coulomb friction into <dynamics> of the joints.
+    #[arg(long)]
+    friction: bool,
     /// Write bodies and parameters as JSON; `-` for standard output.
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
@@ -85,11 +90,39 @@ struct Other {
     value: f64,
 }
 
+/// Where the URDF puts a link's frame in the identified one.
+#[derive(Debug, Serialize)]
+struct Frame {
+    joint: String,
+    /// The URDF's position of the joint is `sign` times the identified one plus `zero`, rad or m.
+    sign: f64,
+    zero: f64,
+    /// Origin of the URDF's frame in the identified one, m.
+    xyz: [f64; 3],
+    /// Its axes by rows: `x = rotation x_urdf + xyz`.
+    rotation: [[f64; 3]; 3],
+}
+
+/// `<dynamics>` of a joint, SI.
+#[derive(Debug, Serialize)]
+struct Dynamics {
+    joint: String,
+    damping: Option<f64>,
+    friction: Option<f64>,
+}
+
 /// The JSON of `export`.
 #[derive(Debug, Serialize)]
 struct Report {
     robot: String,
+    /// In the identified frames.
     links: Vec<Link>,
+    /// Frames of the URDF; empty where they are the identified ones.
+    frames: Vec<Frame>,
+    /// How far the frames are apart at random poses, m and rad.
+    frames_apart: Option<f64>,
+    /// Friction written, with `--friction`.
+    dynamics: Vec<Dynamics>,
     others: Vec<Other>,
     parameters: Vec<Parameter>,
     /// Distance of all parameters from the identified ones, in standard deviations squared, and
@@ -118,6 +151,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         weight: arguments.weight,
         // A new URDF has no description to begin with.
         fill: arguments.fill || arguments.urdf.is_none(),
+        friction: arguments.friction,
     };
     let exported = exported::export(
         &robot,
@@ -150,6 +184,20 @@ fn report(robot: &idim::codegen::Robot, found: &identified::Found, exported: &Ex
         links: links
             .map(|(joint, values)| show::link(&joint.name, values))
             .collect(),
+        frames: exported
+            .frames
+            .as_ref()
+            .map_or(Vec::new(), |found| frames(robot, found)),
+        frames_apart: exported.frames.as_ref().map(|found| found.apart),
+        dynamics: exported
+            .friction
+            .iter()
+            .map(|(joint, dynamics)| Dynamics {
+                joint: joint.clone(),
+                damping: dynamics.damping,
+                friction: dynamics.friction,
+            })
+            .collect(),
         others: exported
             .scalars
             .iter()
@@ -171,4 +219,22 @@ fn report(robot: &idim::codegen::Robot, found: &identified::Found, exported: &Ex
         distance: exported.bodies.distance,
         warnings: exported.warnings.clone(),
     }
+}
+
+fn frames(robot: &idim::codegen::Robot, found: &Alignment) -> Vec<Frame> {
+    if found.is_identity() {
+        return Vec::new();
+    }
+    let links = robot.mechanism.joints.iter().zip(&found.links);
+    let frame = |(joint, link): (&Joint, &Displaced)| {
+        let row = |i: usize| std::array::from_fn(|k| link.pose.rotation[(i, k)] + 0.0);
+        Frame {
+            joint: joint.name.clone(),
+            sign: link.sign,
+            zero: link.zero + 0.0,
+            xyz: link.pose.translation.into(),
+            rotation: std::array::from_fn(row),
+        }
+    };
+    links.map(frame).collect()
 }

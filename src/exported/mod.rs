@@ -1,21 +1,24 @@
 //! From identified base parameters to bodies that exist, in a URDF.
 //!
 //! The way: base parameters with the metric of their log -> [`unknowns`] standard parameters of every
-//! link -> [`physical`](idim_runtime::physical) bodies -> [`share`]d among the described bodies that
-//! move together -> the URDF, which is read again and compared before anyone gets it.
+//! link -> [`physical`](idim_runtime::physical) bodies -> [`frames`] of the URDF's own links ->
+//! [`share`]d among the described bodies that move together -> the URDF, with [`friction`] if asked
+//! for, which is read again and compared before anyone gets it.
 
+mod frames;
+mod friction;
 mod metric;
 mod share;
 mod unknowns;
 
 use idim_codegen::Robot;
 use idim_codegen::builder::{self, BuildError};
-use idim_codegen::emit::urdf::{self, UrdfError};
-use idim_codegen::mechanism::{Mechanism, Standard};
+use idim_codegen::emit::urdf::{self, Dynamics, UrdfError};
+use idim_codegen::mechanism::Standard;
+use idim_codegen::mechanism::alignment::{AlignError, Alignment};
 use idim_runtime::physical::{Bodies, PhysicalError};
 
-/// Frames of two descriptions of one robot differ by no more, m and rad.
-const SAME_FRAME: f64 = 1e-6;
+use frames::Carrier;
 
 /// Values read again differ by no more than this share of their body's size.
 const SAME_VALUE: f64 = 1e-9;
@@ -42,6 +45,8 @@ pub struct Options {
     /// Whether links without a described inertia begin with a guess, a ball on the way to the
     /// next joint.
     pub fill: bool,
+    /// Whether viscous and Coulomb friction go into the URDF.
+    pub friction: bool,
 }
 
 impl Default for Options {
@@ -52,6 +57,7 @@ impl Default for Options {
             masses: Vec::new(),
             weight: 0.01,
             fill: false,
+            friction: false,
         }
     }
 }
@@ -61,11 +67,16 @@ impl Default for Options {
 pub struct Exported {
     /// The URDF.
     pub urdf: String,
-    /// What was found.
+    /// What was found, in the link frames that were identified.
     pub bodies: Bodies,
+    /// Where the URDF puts its link frames in those that were identified; `None` without a URDF.
+    pub frames: Option<Alignment>,
+    /// Friction that was written, by the name of the joint.
+    pub friction: Vec<(String, Dynamics)>,
     /// Names of the scalars among them: `IA1`, `FV1` and the like.
     pub scalars: Vec<String>,
-    /// Links whose description is no body or was guessed, in a sentence each.
+    /// What is to be known of the URDF, in a sentence each: links whose description is no body or
+    /// was guessed, where gravity falls, friction that a URDF has no words for.
     pub warnings: Vec<String>,
 }
 
@@ -86,7 +97,7 @@ pub enum ExportError {
         "the URDF is not of the robot that was identified: {0}; identify with a .toml that has \
          `urdf = ` this file"
     )]
-    Other(String),
+    Other(#[from] AlignError),
     /// Joints that follow others, which a new URDF has no words for.
     #[error(
         "{} follow other joints, and a new URDF would let them hang loose; name the robot's own with \
@@ -112,6 +123,12 @@ pub enum ExportError {
     /// What was written does not say what it should.
     #[error("the written URDF reads back differently at link {0}: please report this")]
     Defect(usize),
+    /// No friction to write.
+    #[error(
+        "no friction was identified: the robot's model has neither FV nor FS; add \"viscous\" and \
+         \"coulomb\" to its `effects` and identify again, or leave out --friction"
+    )]
+    NoFriction,
 }
 
 /// Finds the bodies and writes them into the text of a URDF, or into a new one of the robot's own
@@ -125,72 +142,33 @@ pub fn export(
     identified: &Identified,
     options: &Options,
 ) -> Result<Exported, ExportError> {
-    let carrier = urdf.map(|text| builder::read_texts(&[("robot.urdf", text)]));
-    let carrier = carrier.transpose()?;
-    let carrier = carrier
-        .as_ref()
-        .map_or(&robot.mechanism, |read| &read.mechanism);
-    same_frames(&robot.mechanism, carrier)?;
-    let following = &carrier.joints[carrier.driven..];
-    if urdf.is_none() && !following.is_empty() {
-        let names = following.iter().map(|joint| format!("`{}`", joint.name));
-        return Err(ExportError::Follows(names.collect()));
-    }
-    let unknowns = unknowns::Unknowns::of(robot, carrier, options)?;
+    let carrier = Carrier::of(robot, urdf)?;
+    let mut unknowns = unknowns::Unknowns::of(robot, &carrier.mechanism, options)?;
     let bodies = unknowns.problem(robot, identified, options)?.solve()?;
-    let links: Vec<Standard> = bodies
-        .links
-        .iter()
-        .map(|v| Standard::from_values(*v))
-        .collect();
-    let written = match urdf {
-        Some(text) => urdf::rewrite(text, &share::shares(carrier, &links))?,
-        None => urdf::fresh(carrier, &links),
+    let mut warnings = carrier.warnings();
+    warnings.append(&mut unknowns.warnings);
+    let names: Vec<String> = unknowns.scalars.into_iter().map(|s| s.name).collect();
+    let friction = match options.friction {
+        true => friction::of(&carrier.mechanism, &names, &bodies.scalars, &mut warnings)?,
+        false => Vec::new(),
     };
-    reads_back(&written, &links)?;
+    let links = bodies.links.iter();
+    let links: Vec<Standard> = links.map(|v| Standard::from_values(*v)).collect();
+    let written = match urdf {
+        Some(text) => urdf::rewrite(text, &share::shares(&carrier.mechanism, &links))?,
+        None => urdf::fresh(&carrier.mechanism, &links),
+    };
+    let written = urdf::with_dynamics(&written, &friction)?;
+    reads_back(&written, &carrier.own(&links))?;
+    friction::reads_back(&written, &friction)?;
     Ok(Exported {
         urdf: written,
-        scalars: unknowns
-            .scalars
-            .into_iter()
-            .map(|scalar| scalar.name)
-            .collect(),
-        warnings: unknowns.warnings,
+        frames: carrier.frames,
+        scalars: names,
+        friction,
+        warnings,
         bodies,
     })
-}
-
-/// Whether two descriptions put the same frames on the same joints: only then do their standard
-/// parameters mean the same.
-fn same_frames(identified: &Mechanism, carrier: &Mechanism) -> Result<(), ExportError> {
-    let (a, b) = (&identified.joints, &carrier.joints);
-    if a.len() != b.len() {
-        let message = format!(
-            "it has {} moving joints, and {} were identified",
-            b.len(),
-            a.len()
-        );
-        return Err(ExportError::Other(message));
-    }
-    for (number, (a, b)) in a.iter().zip(b).enumerate() {
-        let angles = [(a.gamma, b.gamma), (a.alpha, b.alpha), (a.theta, b.theta)];
-        // The first frame is where the base is said to be.
-        let turned = angles.iter().any(|(a, b)| {
-            let apart = (a.value() - b.value()).rem_euclid(std::f64::consts::TAU);
-            apart.min(std::f64::consts::TAU - apart) > SAME_FRAME
-        });
-        let moved = a
-            .position
-            .iter()
-            .zip(b.position)
-            .any(|(a, b)| (a - b).abs() > SAME_FRAME);
-        if a.kind != b.kind || a.parent != b.parent || (a.parent.is_some() && (turned || moved)) {
-            let (number, name) = (number + 1, &b.name);
-            let message = format!("joint {number} (`{name}`) is elsewhere or another one");
-            return Err(ExportError::Other(message));
-        }
-    }
-    Ok(())
 }
 
 /// Whether a reader of the written text finds these links.

@@ -4,6 +4,7 @@
 //! along the axes so that offsets vanish, fixed joints merged with their inertia, right angles
 //! exact. It is immutable, and nothing after it can fail.
 
+pub mod alignment;
 pub mod dyad;
 pub mod effects;
 pub mod follow;

@@ -2,9 +2,9 @@
 
 use std::fmt::Write;
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, Rotation3, Vector3};
 
-use super::{Link, Parameter, Report};
+use super::{Frame, Link, Parameter, Report};
 
 /// A parameter that moved by more standard deviations than this is listed.
 const MOVED: f64 = 2.0;
@@ -68,6 +68,17 @@ pub(super) fn text(report: &Report) -> String {
         report.distance.max(0.0).sqrt()
     );
     text.push_str(&moved(&report.parameters));
+    text.push_str(&frames(&report.frames));
+    for dynamics in &report.dynamics {
+        let value = |value: Option<f64>| value.map_or("as it was".into(), |v| format!("{v:.4}"));
+        let _ = writeln!(
+            text,
+            "  {}: damping {}, friction {}",
+            dynamics.joint,
+            value(dynamics.damping),
+            value(dynamics.friction)
+        );
+    }
     for warning in &report.warnings {
         let _ = writeln!(text, "  {warning}");
     }
@@ -114,6 +125,27 @@ fn moved(parameters: &[Parameter]) -> String {
             text,
             "    {:6} {:>12.6} -> {:>12.6} {:8} ({by:+.1} sigma)",
             parameter.name, parameter.identified, parameter.exported, parameter.unit
+        );
+    }
+    text
+}
+
+/// Where the URDF puts its link frames.
+fn frames(frames: &[Frame]) -> String {
+    let mut text = String::new();
+    if frames.is_empty() {
+        return text;
+    }
+    text.push_str("  The URDF has its link frames elsewhere; the bodies went there:\n");
+    for frame in frames {
+        let turn = Matrix3::from_fn(|i, k| frame.rotation[i][k]);
+        let (roll, pitch, yaw) = Rotation3::from_matrix_unchecked(turn).euler_angles();
+        let [x, y, z] = frame.xyz;
+        let sign = if frame.sign < 0.0 { "-" } else { " " };
+        let _ = writeln!(
+            text,
+            "    {}: xyz {x:.4} {y:.4} {z:.4} rpy {roll:.4} {pitch:.4} {yaw:.4}, q_urdf = {sign}q {:+.4}",
+            frame.joint, frame.zero
         );
     }
     text

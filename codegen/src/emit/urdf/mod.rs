@@ -1,9 +1,12 @@
 //! Inertial values as a URDF: put into one that is there ([`rewrite`]), or a new one of a robot's
-//! frames ([`fresh()`]).
+//! frames ([`fresh()`]). Friction of the joints goes the same way ([`with_dynamics`]).
 
+mod dynamics;
+mod edit;
 mod fresh;
 mod rewrite;
 
+pub use dynamics::{Dynamics, dynamics, with_dynamics};
 pub use fresh::fresh;
 pub use rewrite::{UrdfError, rewrite};
 

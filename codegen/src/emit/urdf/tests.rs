@@ -82,6 +82,37 @@ fn values_written_are_read_back_and_other_bytes_stay() {
 }
 
 #[test]
+fn friction_goes_into_dynamics_and_other_bytes_stay() {
+    let text = ARM.replace(
+        "<joint name=\"elbow\" type=\"continuous\">",
+        "<joint name=\"elbow\" type=\"continuous\"><dynamics friction='0.5' spring=\"1\"/>",
+    );
+    let both = |damping, friction| Dynamics { damping, friction };
+    let wanted = [
+        ("shoulder".to_owned(), both(Some(2.5), Some(0.0))),
+        ("elbow".to_owned(), both(Some(1e-7), Some(0.75))),
+    ];
+    let written = with_dynamics(&text, &wanted).unwrap();
+    assert_eq!(dynamics(&written).unwrap(), wanted);
+    // Taken out again, it is the text before.
+    let before = written
+        .replace("\n    <dynamics damping=\"2.5\" friction=\"0\"/>", "")
+        .replace("friction='0.75'", "friction='0.5'")
+        .replace(" damping=\"0.0000001\"/>", "/>");
+    assert_eq!(before, text);
+    // What is not stated stays.
+    let damping = [("elbow".to_owned(), both(Some(3.0), None))];
+    let written = with_dynamics(&text, &damping).unwrap();
+    assert!(written.contains("<dynamics friction='0.5' spring=\"1\" damping=\"3\"/>"));
+    assert_eq!(with_dynamics(&text, &[]).unwrap(), text);
+    let other = [("wrist".to_owned(), both(Some(3.0), None))];
+    assert_eq!(
+        with_dynamics(&text, &other),
+        Err(UrdfError::Joint("wrist".into()))
+    );
+}
+
+#[test]
 fn link_that_is_not_there_and_text_that_is_no_xml_are_errors() {
     let some = inertial(&body(1.0, [0.0; 3], [0.1; 3]));
     let unknown = rewrite(ARM, &[("arm3".into(), some)]);
