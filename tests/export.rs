@@ -7,6 +7,8 @@
     reason = "a test fails by panicking"
 )]
 
+#[path = "export/boxes.rs"]
+mod boxes;
 #[path = "export/frames.rs"]
 mod frames;
 #[path = "export/friction.rs"]

@@ -43,6 +43,9 @@ pub struct Arguments {
     /// Write viscous and Coulomb friction into <dynamics> of the joints.
     #[arg(long)]
     friction: bool,
+    /// Keep the mass of each link inside of the shape that the URDF gives it: box, cylinder or sphere.
+    #[arg(long, requires = "urdf")]
+    boxes: bool,
     /// Write bodies and parameters as JSON; `-` for standard output.
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
@@ -152,6 +155,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         // A new URDF has no description to begin with.
         fill: arguments.fill || arguments.urdf.is_none(),
         friction: arguments.friction,
+        boxes: arguments.boxes,
     };
     let exported = exported::export(
         &robot,

@@ -5,6 +5,7 @@
 //! [`share`]d among the described bodies that move together -> the URDF, with [`friction`] if asked
 //! for, which is read again and compared before anyone gets it.
 
+mod boxes;
 mod frames;
 mod friction;
 mod metric;
@@ -13,6 +14,7 @@ mod unknowns;
 
 use idim_codegen::Robot;
 use idim_codegen::builder::{self, BuildError};
+use idim_codegen::describe::shapes::ShapeError;
 use idim_codegen::emit::urdf::{self, Dynamics, UrdfError};
 use idim_codegen::mechanism::Standard;
 use idim_codegen::mechanism::alignment::{AlignError, Alignment};
@@ -47,6 +49,8 @@ pub struct Options {
     pub fill: bool,
     /// Whether viscous and Coulomb friction go into the URDF.
     pub friction: bool,
+    /// Whether the mass of links is inside of the shapes that the URDF gives them.
+    pub boxes: bool,
 }
 
 impl Default for Options {
@@ -58,6 +62,7 @@ impl Default for Options {
             weight: 0.01,
             fill: false,
             friction: false,
+            boxes: false,
         }
     }
 }
@@ -123,6 +128,16 @@ pub enum ExportError {
     /// What was written does not say what it should.
     #[error("the written URDF reads back differently at link {0}: please report this")]
     Defect(usize),
+    /// A shape that is none.
+    #[error(transparent)]
+    Shapes(#[from] ShapeError),
+    /// No shapes to stay inside of.
+    #[error(
+        "no moving link has a shape that is read: --boxes takes <box>, <cylinder> and <sphere> of \
+         <collision> or <visual> in the file of --urdf, and no meshes; give the links such shapes, or \
+         leave it out"
+    )]
+    NoShapes,
     /// No friction to write.
     #[error(
         "no friction was identified: the robot's model has neither FV nor FS; add \"viscous\" and \
@@ -144,9 +159,13 @@ pub fn export(
 ) -> Result<Exported, ExportError> {
     let carrier = Carrier::of(robot, urdf)?;
     let mut unknowns = unknowns::Unknowns::of(robot, &carrier.mechanism, options)?;
-    let bodies = unknowns.problem(robot, identified, options)?.solve()?;
     let mut warnings = carrier.warnings();
     warnings.append(&mut unknowns.warnings);
+    let mut problem = unknowns.problem(robot, identified, options)?;
+    if options.boxes {
+        problem.bounds = boxes::of(&carrier.mechanism, urdf, &mut warnings)?;
+    }
+    let bodies = problem.solve()?;
     let names: Vec<String> = unknowns.scalars.into_iter().map(|s| s.name).collect();
     let friction = match options.friction {
         true => friction::of(&carrier.mechanism, &names, &bodies.scalars, &mut warnings)?,

@@ -89,6 +89,7 @@ impl Unknowns {
             estimate: identified.parameters.clone(),
             precision: identified.precision.clone(),
             known: self.known.clone(),
+            bounds: Vec::new(),
             weight: options.weight,
         })
     }

@@ -15,6 +15,7 @@ pub mod identifier;
 #[cfg(test)]
 mod never_panics;
 mod par;
+pub mod shapes;
 mod source;
 mod suggest;
 mod toml;

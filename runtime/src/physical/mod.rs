@@ -15,13 +15,16 @@
 //! 2020; Wensing, Kim, Slotine, "Linear matrix inequalities for physically consistent inertial
 //! parameter identification", IEEE RA-L 3, 2018). It grows without bound where a P_k ceases to be
 //! positive definite, and s_j are the parameters that cannot be negative: rotor inertias and
-//! friction. The problem is convex and self-concordant; [`newton`] solves it without a semidefinite
-//! solver.
+//! friction. Where the extent of a link is known, what its mass cannot exceed ([`Extent`]) adds
+//! \\( -\gamma \sum \log \mathrm{tr}(P_k Q) \\). The problem is convex and self-concordant; [`newton`]
+//! solves it without a semidefinite solver.
 
 mod bodies;
+mod extent;
 mod newton;
 mod pseudo;
 
+pub use extent::{Extent, Shape};
 pub use pseudo::{Prior, Pseudo};
 
 /// A parameter that is no inertial parameter of a link.
@@ -46,6 +49,17 @@ pub struct Known {
     pub sigma: f64,
 }
 
+/// A shape that the mass of a link is inside of.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Bound {
+    /// The link in words, for messages: `what moves with joint elbow`.
+    pub what: String,
+    /// Counted from 0.
+    pub link: usize,
+    /// In the frame of the link.
+    pub extent: Extent,
+}
+
 /// What is to be solved. The unknowns z are ten values of each link in the order of
 /// [`crate::knowledge::STANDARD`], then the scalars.
 #[derive(Clone, Debug)]
@@ -62,6 +76,8 @@ pub struct Problem {
     pub precision: Vec<f64>,
     /// What is known beside.
     pub known: Vec<Known>,
+    /// What the mass of links is inside of.
+    pub bounds: Vec<Bound>,
     /// \\( \gamma \\): what the description counts for, in standard deviations of the data
     /// squared; 1 takes it for known to about its own size.
     pub weight: f64,
@@ -119,6 +135,18 @@ pub enum PhysicalError {
         /// The nearest value there is.
         nearest: f64,
     },
+    /// A shape that no bodies with these base parameters are inside of.
+    #[error(
+        "{what} cannot be inside of its shape: bodies that are inside of theirs are {farther:.1} \
+         standard deviations farther from the identified parameters than bodies anywhere, and {what} \
+         reaches nearest to the edge of its own; check the shape and the log, or leave shapes out"
+    )]
+    Outside {
+        /// Which link.
+        what: String,
+        /// How much farther, in standard deviations, stretched where bodies are far already.
+        farther: f64,
+    },
     /// Newton's method came to no end.
     #[error(
         "no bodies were found after {steps} steps: the precision of the estimate is no covariance"
@@ -139,6 +167,42 @@ impl Problem {
     /// [`PhysicalError`].
     pub fn solve(&self) -> Result<Bodies, PhysicalError> {
         self.check()?;
+        let found = self.nearest()?;
+        if !self.bounds.is_empty() {
+            let anywhere = Problem {
+                bounds: Vec::new(),
+                ..self.clone()
+            };
+            self.fits(&found, &anywhere.nearest()?)?;
+        }
+        Ok(found)
+    }
+
+    /// Whether bodies inside of their shapes explain the estimate like bodies `anywhere`: where these
+    /// are farther from it than its errors, so much more is allowed.
+    fn fits(&self, found: &Bodies, anywhere: &Bodies) -> Result<(), PhysicalError> {
+        let stretch = (anywhere.distance / self.estimate.len() as f64).max(1.0);
+        let farther = ((found.distance - anywhere.distance).max(0.0) / stretch).sqrt();
+        let room = |bound: &Bound| bound.extent.room(&Pseudo::of(&found.links[bound.link]));
+        let mut bounds = self.bounds.iter();
+        let first = bounds.next();
+        let least = first.map(|first| {
+            bounds.fold(first, |least, bound| match room(bound) < room(least) {
+                true => bound,
+                false => least,
+            })
+        });
+        match least.filter(|_| farther > MISSED) {
+            Some(bound) => Err(PhysicalError::Outside {
+                what: bound.what.clone(),
+                farther,
+            }),
+            None => Ok(()),
+        }
+    }
+
+    /// The minimum, which keeps what is known beside.
+    fn nearest(&self) -> Result<Bodies, PhysicalError> {
         let (point, steps) = newton::minimum(self)?;
         let unknowns = point.unknowns();
         for known in &self.known {
@@ -211,6 +275,13 @@ impl Problem {
                 self.weight,
                 "positive",
             ));
+        }
+        for bound in &self.bounds {
+            let narrowest = bound.extent.narrowest();
+            if bound.link >= self.links.len() || !(narrowest > 0.0 && narrowest.is_finite()) {
+                let what = format!("half the extent of {}, in m,", bound.what);
+                return Err(wrong(&what, narrowest, "positive"));
+            }
         }
         for known in &self.known {
             if !(known.value > 0.0 && known.value.is_finite()) {

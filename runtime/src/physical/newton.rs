@@ -5,7 +5,7 @@ use faer::{Mat, Side};
 
 use super::bodies::{Described, LEFT, Local, divergence};
 use super::pseudo::Pseudo;
-use super::{PhysicalError, Problem, Scalar};
+use super::{Bound, PhysicalError, Problem, Scalar};
 
 /// At first the description counts as much as the data speak against it, and a third of that in
 /// every further round: each begins where Newton's method converges fast.
@@ -22,6 +22,11 @@ const HELD: f64 = 1e-8;
 
 /// What is added to a Hessian of unit diagonal that rounding has made indefinite.
 const RIDGES: [f64; 6] = [0.0, 1e-15, 1e-13, 1e-11, 1e-9, 1e-7];
+
+/// Room that the first bodies have inside of their shapes, as a share of their mass, and the shares
+/// of a ball in the middle that are tried for it.
+const ROOM: f64 = 0.1;
+const SHARES: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 
 /// Bodies and scalars on the way.
 #[derive(Clone)]
@@ -57,6 +62,8 @@ pub(super) fn minimum(problem: &Problem) -> Result<(Point, usize), PhysicalError
 struct Solver<'a> {
     problem: &'a Problem,
     described: Vec<Described>,
+    /// What is positive of a link inside of its shape: link and factors of its ten parameters.
+    conditions: Vec<(usize, [f64; 10])>,
     /// K^T G K and K^T G X, with what is known beside.
     normal: Mat<f64>,
     right: Vec<f64>,
@@ -73,27 +80,33 @@ impl<'a> Solver<'a> {
         });
         let described = described.collect::<Result<Vec<_>, _>>()?;
         let (normal, right) = normal_equations(problem);
+        let bounds = problem.bounds.iter();
+        let of = |bound: &Bound| {
+            let link = bound.link;
+            let conditions = bound.extent.conditions().into_iter();
+            conditions.map(move |factors| (link, factors))
+        };
         Ok(Solver {
             problem,
             described,
+            conditions: bounds.flat_map(of).collect(),
             normal,
             right,
         })
     }
 
-    /// The description.
+    /// The description, its bodies drawn into their shapes.
     fn start(&self) -> Point {
         let scalar = |scalar: &Scalar| match scalar {
             Scalar::Positive(described) => *described,
             Scalar::Free => 0.0,
         };
+        let mut links: Vec<Pseudo> = self.problem.links.iter().map(|p| p.pseudo).collect();
+        for bound in &self.problem.bounds {
+            links[bound.link] = inside(&links[bound.link], bound);
+        }
         Point {
-            links: self
-                .problem
-                .links
-                .iter()
-                .map(|prior| prior.pseudo)
-                .collect(),
+            links,
             scalars: self.problem.scalars.iter().map(scalar).collect(),
         }
     }
@@ -154,7 +167,13 @@ impl<'a> Solver<'a> {
         let links = local.iter().zip(links.chunks_exact(10));
         let links = links
             .map(|(local, step)| local.at(step))
-            .collect::<Option<_>>()?;
+            .collect::<Option<Vec<_>>>()?;
+        let outside = |(link, factors): &(usize, [f64; 10])| {
+            sum(factors, &links[*link]) < LEFT * sum(factors, &at.links[*link])
+        };
+        if self.conditions.iter().any(outside) {
+            return None;
+        }
         let scalars = scalars.iter().zip(&at.scalars).zip(&self.problem.scalars);
         let scalar = |((step, x), scalar): ((&f64, &f64), &Scalar)| match scalar {
             Scalar::Positive(_) if *step < LEFT - 1.0 => None,
@@ -176,6 +195,13 @@ impl<'a> Solver<'a> {
                 Scalar::Positive(described) => x / described - (x / described).ln() - 1.0,
                 Scalar::Free => 0.5 * HELD * x * x,
             };
+        }
+        for (link, factors) in &self.conditions {
+            let left = sum(factors, &at.links[*link]);
+            if left <= 0.0 {
+                return None;
+            }
+            away -= left.ln();
         }
         let unknowns = at.unknowns();
         let known = self.problem.known.iter().map(|known| {
@@ -223,8 +249,45 @@ impl<'a> Solver<'a> {
         for (k, curvature) in curvature.into_iter().enumerate() {
             hessian[(k, k)] += weight * curvature;
         }
+        for (link, factors) in &self.conditions {
+            let left = sum(factors, &at.links[*link]);
+            let slope = local[*link]
+                .values
+                .map(|values| dot(factors, &values) / left);
+            for (i, a) in slope.iter().enumerate() {
+                gradient[10 * link + i] -= weight * a;
+                for (k, b) in slope.iter().enumerate() {
+                    hessian[(10 * link + i, 10 * link + k)] += weight * a * b;
+                }
+            }
+        }
         (gradient, hessian)
     }
+}
+
+/// A body with room inside of its shape: as described, or with as much of a ball in the middle as it
+/// takes.
+fn inside(described: &Pseudo, bound: &Bound) -> Pseudo {
+    let mass = described.0[3][3];
+    let extent = &bound.extent;
+    let ball = Pseudo::ball(mass, extent.narrowest() / 3.0, extent.center);
+    let mixed = |share: f64| {
+        let entry = |i: usize, k: usize| (1.0 - share) * described.0[i][k] + share * ball.0[i][k];
+        Pseudo(std::array::from_fn(|i| {
+            std::array::from_fn(|k| entry(i, k))
+        }))
+    };
+    let all = SHARES.into_iter().map(mixed);
+    let mut all = all.filter(|body| extent.room(body) >= ROOM);
+    all.next().unwrap_or(ball)
+}
+
+fn sum(factors: &[f64; 10], body: &Pseudo) -> f64 {
+    dot(factors, &body.values())
+}
+
+fn dot(a: &[f64; 10], b: &[f64; 10]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 /// What a scalar's coordinate is counted in: a positive one in shares of itself.

@@ -30,6 +30,7 @@ fn problem(truth: &[[f64; 10]; 2], scalars: [f64; 2], precision: f64) -> Problem
             .map(|at| if at / np == at % np { precision } else { 0.0 })
             .collect(),
         known: Vec::new(),
+        bounds: Vec::new(),
         weight: 1e-3,
     }
 }
@@ -106,4 +107,57 @@ fn known_mass_is_kept_and_one_that_cannot_be_is_named() {
     }
     known.known = vec![mass(-1.0)];
     assert!(matches!(known.solve(), Err(PhysicalError::Value { .. })));
+}
+
+fn bound(link: usize, center: [f64; 3], half: [f64; 3]) -> Bound {
+    Bound {
+        what: format!("link {}", link + 1),
+        link,
+        extent: Extent::upright(center, half),
+    }
+}
+
+#[test]
+fn bodies_stay_inside_of_their_boxes() {
+    // The ball described for link 2 reaches out of its box.
+    let mut bounded = problem(&bodies(), [0.05, -0.3], 1e6);
+    bounded.bounds = vec![
+        bound(0, [0.2, 0.05, 0.0], [0.25, 0.2, 0.2]),
+        bound(1, [0.15, 0.05, 0.0], [0.25, 0.14, 0.14]),
+    ];
+    let described = bounded.links[1].pseudo;
+    assert!(bounded.bounds[1].extent.room(&described) < 0.0);
+    let found = bounded.solve().unwrap();
+    for bound in &bounded.bounds {
+        let body = Pseudo::of(&found.links[bound.link]);
+        assert!(
+            body.exists() && bound.extent.room(&body) > 0.0,
+            "{}",
+            bound.what
+        );
+    }
+    assert!(found.distance < 1.0, "{}", found.distance);
+}
+
+#[test]
+fn box_that_no_body_is_inside_of_is_named() {
+    let mut impossible = problem(&bodies(), [0.05, -0.3], 1e8);
+    impossible.bounds = vec![
+        bound(0, [0.2, 0.05, 0.0], [0.25, 0.2, 0.2]),
+        // Its centre of mass is 0.15 m away from the axis.
+        bound(1, [0.0; 3], [0.1; 3]),
+    ];
+    match impossible.solve() {
+        Err(PhysicalError::Outside { what, farther }) => {
+            assert_eq!(what, "link 2");
+            assert!(farther > 10.0);
+        }
+        other => panic!("{other:?}"),
+    }
+    impossible.bounds[1] = bound(1, [0.0; 3], [0.1, -0.1, 0.1]);
+    let wrong = impossible.solve();
+    assert!(
+        matches!(wrong, Err(PhysicalError::Value { .. })),
+        "{wrong:?}"
+    );
 }
