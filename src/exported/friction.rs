@@ -35,7 +35,6 @@ pub(super) fn of(
             damping: value("FV", "damping"),
             friction: value("FS", "friction"),
         };
-        warnings.extend(left_out(names, number, &joint.name));
         if dynamics != Dynamics::default() {
             written.push((joint.name.clone(), dynamics));
         } else {
@@ -45,24 +44,24 @@ pub(super) fn of(
             ));
         }
     }
+    warnings.extend(left_out(names));
     match written.is_empty() {
         true => Err(ExportError::NoFriction),
         false => Ok(written),
     }
 }
 
-/// What a joint has of friction beside, in a sentence: the names of other friction begin with F.
-fn left_out(names: &[String], number: usize, joint: &str) -> Option<String> {
+/// What there is of friction beside, in a sentence: the names of all friction begin with F.
+fn left_out(names: &[String]) -> Option<String> {
     let other = |name: &&String| {
         let symbol = name.trim_end_matches(|c: char| c.is_ascii_digit());
-        let own = name[symbol.len()..] == number.to_string();
-        own && symbol.starts_with('F') && !["FV", "FS"].contains(&symbol)
+        symbol.starts_with('F') && !["FV", "FS"].contains(&symbol)
     };
     let others: Vec<&str> = names.iter().filter(other).map(String::as_str).collect();
     (!others.is_empty()).then(|| {
         format!(
-            "The friction of `{joint}` has {} beside, which a URDF has no words for: its damping and \
-             friction are only a part of it.",
+            "A URDF has no words for {}: FV and FS of these joints are only a part of their friction. \
+             Identify with viscous and Coulomb friction alone for the whole of it in two numbers.",
             others.join(", ")
         )
     })

@@ -140,12 +140,16 @@ fn frames(frames: &[Frame]) -> String {
     for frame in frames {
         let turn = Matrix3::from_fn(|i, k| frame.rotation[i][k]);
         let (roll, pitch, yaw) = Rotation3::from_matrix_unchecked(turn).euler_angles();
-        let [x, y, z] = frame.xyz;
+        // Rounded before it is written: no zero has a sign.
+        let round = |x: f64| (x * 1e4).round() / 1e4 + 0.0;
+        let [x, y, z] = frame.xyz.map(round);
+        let [roll, pitch, yaw] = [roll, pitch, yaw].map(round);
         let sign = if frame.sign < 0.0 { "-" } else { " " };
         let _ = writeln!(
             text,
             "    {}: xyz {x:.4} {y:.4} {z:.4} rpy {roll:.4} {pitch:.4} {yaw:.4}, q_urdf = {sign}q {:+.4}",
-            frame.joint, frame.zero
+            frame.joint,
+            round(frame.zero)
         );
     }
     text
