@@ -22,7 +22,7 @@ use idim::codegen::emit::urdf;
 use idim::codegen::mechanism::Standard;
 use idim::codegen::mechanism::inertia::NAMES;
 use idim::codegen::{Robot, builder};
-use idim::exported::{ExportError, Exported, Identified, Options, export};
+use idim::exported::{ExportError, Exported, Identified, Options, Plane, export};
 use idim::interpreted::Interpreter;
 use idim::robots;
 use idim::runtime::identify::{Options as Identify, identify, predict};
@@ -356,6 +356,20 @@ fn what_cannot_be_exported_is_said() {
         }
         other => panic!("{other:?}"),
     }
+    let unknown = Options {
+        symmetric: vec![("hand".into(), Plane::Xy)],
+        ..fill()
+    };
+    assert!(matches!(
+        run(&unknown),
+        Err(ExportError::UnknownLink { .. })
+    ));
+    let symmetric = Options {
+        symmetric: vec![("lower".into(), Plane::Xy)],
+        ..fill()
+    };
+    let [_, _, xz, _, yz, _, _, _, mz, _] = run(&symmetric).unwrap().bodies.links[1];
+    assert_eq!([xz, yz, mz], [0.0; 3]);
     let negative = Options {
         total_mass: Some(-3.0),
         ..fill()
@@ -440,6 +454,10 @@ fn command_writes_a_urdf_and_says_what_it_holds() {
     assert!((exported("ZZR1") - 3.5).abs() < 0.05);
     let wrong = run(&["--mass", "elbow"]);
     assert_eq!(wrong.status.code(), Some(2));
+    let plane = run(&["--symmetric", "elbow=xx"]);
+    assert_eq!(plane.status.code(), Some(2));
+    let boxes = run(&["--boxes"]);
+    assert_eq!(boxes.status.code(), Some(2));
     let heavy = run(&["--mass", "forearm=3"]);
     assert_eq!(heavy.status.code(), Some(1));
     assert!(String::from_utf8_lossy(&heavy.stderr).contains("there is no joint or moving link"));

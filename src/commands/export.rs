@@ -7,7 +7,7 @@ use std::path::PathBuf;
 
 use idim::codegen::mechanism::Joint;
 use idim::codegen::mechanism::alignment::{Alignment, Displaced};
-use idim::exported::{self, Exported, Options};
+use idim::exported::{self, Exported, Options, Plane};
 use idim::interpreted::Interpreter;
 use serde::Serialize;
 
@@ -46,6 +46,10 @@ pub struct Arguments {
     /// Keep the mass of each link inside of the shape that the URDF gives it: box, cylinder or sphere.
     #[arg(long, requires = "urdf")]
     boxes: bool,
+    /// What moves with a joint (or its link) is symmetric about a plane of its identified frame (see
+    /// `idim describe`): xy, xz or yz; may be repeated.
+    #[arg(long, value_name = "NAME=PLANE", value_parser = symmetric)]
+    symmetric: Vec<(String, Plane)>,
     /// Write bodies and parameters as JSON; `-` for standard output.
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
@@ -58,6 +62,18 @@ fn named(text: &str) -> Result<(String, f64), String> {
     let parts = text.rsplit_once('=');
     let parts = parts.and_then(|(name, mass)| Some((name.to_owned(), mass.parse().ok()?)));
     parts.ok_or_else(|| "write NAME=KG, such as link_3=4.2".to_owned())
+}
+
+fn symmetric(text: &str) -> Result<(String, Plane), String> {
+    let plane = |plane: &str| match plane {
+        "xy" => Some(Plane::Xy),
+        "xz" => Some(Plane::Xz),
+        "yz" => Some(Plane::Yz),
+        _ => None,
+    };
+    let parts = text.rsplit_once('=');
+    let parts = parts.and_then(|(name, word)| Some((name.to_owned(), plane(word)?)));
+    parts.ok_or_else(|| "write NAME=xy, NAME=xz or NAME=yz, such as link_3=xz".to_owned())
 }
 
 /// One base parameter before and after.
@@ -156,6 +172,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         fill: arguments.fill || arguments.urdf.is_none(),
         friction: arguments.friction,
         boxes: arguments.boxes,
+        symmetric: arguments.symmetric.clone(),
     };
     let exported = exported::export(
         &robot,

@@ -51,6 +51,31 @@ pub struct Options {
     pub friction: bool,
     /// Whether the mass of links is inside of the shapes that the URDF gives them.
     pub boxes: bool,
+    /// Links that are symmetric about a plane of their identified frame, by the name of the joint
+    /// or of one of its links.
+    pub symmetric: Vec<(String, Plane)>,
+}
+
+/// A plane through the origin of a link's frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Plane {
+    /// That of x and y.
+    Xy,
+    /// That of x and z.
+    Xz,
+    /// That of y and z.
+    Yz,
+}
+
+impl Plane {
+    /// The axis square to it, 0 to 2.
+    fn normal(self) -> usize {
+        match self {
+            Plane::Yz => 0,
+            Plane::Xz => 1,
+            Plane::Xy => 2,
+        }
+    }
 }
 
 impl Default for Options {
@@ -63,6 +88,7 @@ impl Default for Options {
             fill: false,
             friction: false,
             boxes: false,
+            symmetric: Vec::new(),
         }
     }
 }

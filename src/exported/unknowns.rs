@@ -3,9 +3,9 @@
 use idim_codegen::Robot;
 use idim_codegen::knowledge;
 use idim_codegen::mechanism::{Joint, Mechanism};
-use idim_runtime::physical::{Known, Prior, Problem, Pseudo, Scalar};
+use idim_runtime::physical::{Known, Mirror, Prior, Problem, Pseudo, Scalar};
 
-use super::{ExportError, Identified, Options};
+use super::{ExportError, Identified, Options, Plane};
 
 /// Standard deviation of a mass that is stated, as a share of it.
 const STATED: f64 = 1e-4;
@@ -31,6 +31,7 @@ pub(super) struct Unknowns {
     links: Vec<Prior>,
     pub scalars: Vec<Named>,
     known: Vec<Known>,
+    mirrors: Vec<Mirror>,
     pub warnings: Vec<String>,
 }
 
@@ -46,6 +47,7 @@ impl Unknowns {
         Ok(Unknowns {
             scalars: scalars(robot),
             known: known(carrier, options)?,
+            mirrors: mirrors(carrier, options)?,
             links,
             warnings,
         })
@@ -90,6 +92,7 @@ impl Unknowns {
             precision: identified.precision.clone(),
             known: self.known.clone(),
             bounds: Vec::new(),
+            mirrors: self.mirrors.clone(),
             weight: options.weight,
         })
     }
@@ -212,19 +215,8 @@ fn known(mechanism: &Mechanism, options: &Options) -> Result<Vec<Known>, ExportE
             total,
         ));
     }
-    let is = |joint: &Joint, name: &str| {
-        joint.name == name || joint.bodies.iter().any(|body| body.name == name)
-    };
     for (name, value) in &options.masses {
-        let link = mechanism.joints.iter().position(|joint| is(joint, name));
-        let link = link.ok_or_else(|| ExportError::UnknownLink {
-            name: name.clone(),
-            known: mechanism
-                .joints
-                .iter()
-                .map(|joint| joint.name.clone())
-                .collect(),
-        })?;
+        let link = link(mechanism, name)?;
         known.push(stated(
             format!("mass of `{name}`"),
             vec![(mass(link), 1.0)],
@@ -232,4 +224,31 @@ fn known(mechanism: &Mechanism, options: &Options) -> Result<Vec<Known>, ExportE
         ));
     }
     Ok(known)
+}
+
+/// Planes that links are symmetric about.
+fn mirrors(mechanism: &Mechanism, options: &Options) -> Result<Vec<Mirror>, ExportError> {
+    let planes = options.symmetric.iter();
+    let mirror = |(name, plane): &(String, Plane)| {
+        Ok(Mirror {
+            link: link(mechanism, name)?,
+            normal: plane.normal(),
+        })
+    };
+    planes.map(mirror).collect()
+}
+
+/// The link that a joint or one of its bodies names.
+fn link(mechanism: &Mechanism, name: &str) -> Result<usize, ExportError> {
+    let is =
+        |joint: &Joint| joint.name == name || joint.bodies.iter().any(|body| body.name == name);
+    let found = mechanism.joints.iter().position(is);
+    found.ok_or_else(|| ExportError::UnknownLink {
+        name: name.to_owned(),
+        known: mechanism
+            .joints
+            .iter()
+            .map(|joint| joint.name.clone())
+            .collect(),
+    })
 }

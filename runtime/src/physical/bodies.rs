@@ -43,10 +43,18 @@ pub(super) fn divergence(pseudo: &Pseudo, described: &Described) -> Option<f64> 
 }
 
 impl Local {
-    /// Around a body; `None` if it is none.
-    pub fn of(pseudo: &Pseudo, described: &Described) -> Option<Local> {
+    /// Around a body, with coordinates that leave it symmetric about the planes through the origin
+    /// with these normals; `None` if it is none.
+    ///
+    /// Where P is symmetric, so is L, and \\( L (1 + S) L^T \\) stays so without the entries of S that
+    /// pair a normal with anything else: these coordinates move nothing.
+    pub fn of(pseudo: &Pseudo, described: &Described, normals: &[usize]) -> Option<Local> {
         let root = pseudo.cholesky()?;
-        let moved = PLACES.map(|place| stretched(&root, &unit(place)));
+        let held = PLACES.map(|(a, b)| normals.iter().any(|n| (a == *n) != (b == *n)));
+        let moved = std::array::from_fn(|i| match held[i] {
+            true => [[0.0; 4]; 4],
+            false => stretched(&root, &unit(PLACES[i])),
+        });
         Some(Local {
             values: moved.map(|moved| Pseudo(moved).values()),
             gradient: std::array::from_fn(|i| {
@@ -114,7 +122,7 @@ mod tests {
     fn gradient_is_that_of_the_divergence_and_its_curvature_is_one() {
         let described = Pseudo::ball(2.0, 0.1, [0.1, 0.0, 0.3]).inverse().unwrap();
         let pseudo = Pseudo::ball(1.7, 0.003, [0.12, 0.01, 0.28]);
-        let local = Local::of(&pseudo, &described).unwrap();
+        let local = Local::of(&pseudo, &described, &[]).unwrap();
         let value = |i: usize, by: f64| {
             let mut at = [0.0; 10];
             at[i] = by;
@@ -150,7 +158,7 @@ mod tests {
         let described = Pseudo::ball(2.0, 0.1, [0.1, 0.0, 0.3]);
         let inverse = described.inverse().unwrap();
         assert!(divergence(&described, &inverse).unwrap().abs() < 1e-12);
-        let gradient = Local::of(&described, &inverse).unwrap().gradient;
+        let gradient = Local::of(&described, &inverse, &[]).unwrap().gradient;
         assert!(gradient.iter().all(|g| g.abs() < 1e-9));
         assert!(divergence(&Pseudo::ball(2.1, 0.1, [0.1, 0.0, 0.3]), &inverse).unwrap() > 1e-3);
         let none = Pseudo::of(&[0.5, 0.0, 0.0, 0.2, 0.0, 0.2, 0.0, 0.0, 0.0, 1.0]);

@@ -60,6 +60,16 @@ pub struct Bound {
     pub extent: Extent,
 }
 
+/// A plane through the origin of a link's frame that its mass is symmetric about: two products of
+/// inertia and a first moment are zero.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Mirror {
+    /// Counted from 0.
+    pub link: usize,
+    /// Axis of the frame that is square to the plane, 0 to 2.
+    pub normal: usize,
+}
+
 /// What is to be solved. The unknowns z are ten values of each link in the order of
 /// [`crate::knowledge::STANDARD`], then the scalars.
 #[derive(Clone, Debug)]
@@ -78,6 +88,8 @@ pub struct Problem {
     pub known: Vec<Known>,
     /// What the mass of links is inside of.
     pub bounds: Vec<Bound>,
+    /// Links that are symmetric.
+    pub mirrors: Vec<Mirror>,
     /// \\( \gamma \\): what the description counts for, in standard deviations of the data
     /// squared; 1 takes it for known to about its own size.
     pub weight: f64,
@@ -146,6 +158,15 @@ pub enum PhysicalError {
         what: String,
         /// How much farther, in standard deviations, stretched where bodies are far already.
         farther: f64,
+    },
+    /// A shape that has no room about the plane its mass is symmetric about.
+    #[error(
+        "{what} is symmetric about a plane that does not go through the middle of its shape: correct \
+         the one or the other"
+    )]
+    Beside {
+        /// Which link.
+        what: String,
     },
     /// Newton's method came to no end.
     #[error(
@@ -226,6 +247,12 @@ impl Problem {
         })
     }
 
+    /// Normals of the planes that a link is symmetric about.
+    fn normals(&self, link: usize) -> Vec<usize> {
+        let own = self.mirrors.iter().filter(|mirror| mirror.link == link);
+        own.map(|mirror| mirror.normal).collect()
+    }
+
     /// Number of unknowns.
     fn unknowns(&self) -> usize {
         10 * self.links.len() + self.scalars.len()
@@ -282,6 +309,12 @@ impl Problem {
                 let what = format!("half the extent of {}, in m,", bound.what);
                 return Err(wrong(&what, narrowest, "positive"));
             }
+        }
+        let mirrors = self.mirrors.iter();
+        let mut beyond = mirrors.filter(|m| m.link >= self.links.len() || m.normal > 2);
+        if let Some(mirror) = beyond.next() {
+            let what = "the link of a plane, or its normal,";
+            return Err(wrong(what, mirror.normal as f64, "one that is there"));
         }
         for known in &self.known {
             if !(known.value > 0.0 && known.value.is_finite()) {

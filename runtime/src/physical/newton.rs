@@ -46,7 +46,7 @@ impl Point {
 /// The minimum, and the steps taken.
 pub(super) fn minimum(problem: &Problem) -> Result<(Point, usize), PhysicalError> {
     let solver = Solver::new(problem)?;
-    let mut at = solver.start();
+    let mut at = solver.start()?;
     let mut steps = 0;
     let against = problem.misfit(&problem.parameters(&at.unknowns()));
     let mut weight = against.max(problem.weight);
@@ -95,20 +95,27 @@ impl<'a> Solver<'a> {
         })
     }
 
-    /// The description, its bodies drawn into their shapes.
-    fn start(&self) -> Point {
+    /// The description, its bodies made symmetric and drawn into their shapes.
+    fn start(&self) -> Result<Point, PhysicalError> {
         let scalar = |scalar: &Scalar| match scalar {
             Scalar::Positive(described) => *described,
             Scalar::Free => 0.0,
         };
         let mut links: Vec<Pseudo> = self.problem.links.iter().map(|p| p.pseudo).collect();
-        for bound in &self.problem.bounds {
-            links[bound.link] = inside(&links[bound.link], bound);
+        for mirror in &self.problem.mirrors {
+            links[mirror.link] = links[mirror.link].mirrored(mirror.normal);
         }
-        Point {
+        for bound in &self.problem.bounds {
+            let normals = self.problem.normals(bound.link);
+            let found = inside(&links[bound.link], bound, &normals);
+            links[bound.link] = found.ok_or_else(|| PhysicalError::Beside {
+                what: bound.what.clone(),
+            })?;
+        }
+        Ok(Point {
             links,
             scalars: self.problem.scalars.iter().map(scalar).collect(),
-        }
+        })
     }
 
     /// Newton's method at one weight; the steps it took.
@@ -154,9 +161,9 @@ impl<'a> Solver<'a> {
     }
 
     fn locals(&self, at: &Point) -> Option<Vec<Local>> {
-        let links = at.links.iter().zip(&self.described);
+        let links = at.links.iter().zip(&self.described).enumerate();
         links
-            .map(|(link, described)| Local::of(link, described))
+            .map(|(k, (link, described))| Local::of(link, described, &self.problem.normals(k)))
             .collect()
     }
 
@@ -266,20 +273,20 @@ impl<'a> Solver<'a> {
 }
 
 /// A body with room inside of its shape: as described, or with as much of a ball in the middle as it
-/// takes.
-fn inside(described: &Pseudo, bound: &Bound) -> Pseudo {
+/// takes. `None` where the planes it is symmetric about leave none.
+fn inside(described: &Pseudo, bound: &Bound, normals: &[usize]) -> Option<Pseudo> {
     let mass = described.0[3][3];
     let extent = &bound.extent;
     let ball = Pseudo::ball(mass, extent.narrowest() / 3.0, extent.center);
+    let ball = normals.iter().fold(ball, |ball, n| ball.mirrored(*n));
     let mixed = |share: f64| {
         let entry = |i: usize, k: usize| (1.0 - share) * described.0[i][k] + share * ball.0[i][k];
         Pseudo(std::array::from_fn(|i| {
             std::array::from_fn(|k| entry(i, k))
         }))
     };
-    let all = SHARES.into_iter().map(mixed);
-    let mut all = all.filter(|body| extent.room(body) >= ROOM);
-    all.next().unwrap_or(ball)
+    let mut all = SHARES.into_iter().map(mixed);
+    all.find(|body| extent.room(body) >= ROOM)
 }
 
 fn sum(factors: &[f64; 10], body: &Pseudo) -> f64 {

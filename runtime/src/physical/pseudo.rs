@@ -71,6 +71,18 @@ impl Pseudo {
         }))
     }
 
+    /// The mean of a body and its image in the plane through the origin that is square to an axis:
+    /// no products with that axis, no first moment along it.
+    pub fn mirrored(&self, normal: usize) -> Pseudo {
+        let entry = |i: usize, k: usize| match (i == normal) != (k == normal) {
+            true => 0.0,
+            false => self.0[i][k],
+        };
+        Pseudo(std::array::from_fn(|i| {
+            std::array::from_fn(|k| entry(i, k))
+        }))
+    }
+
     /// Lower triangular L with P = L L^T; `None` where P is not positive definite.
     pub fn cholesky(&self) -> Option<Square> {
         let mut l = [[0.0; 4]; 4];

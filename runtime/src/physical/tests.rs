@@ -31,6 +31,7 @@ fn problem(truth: &[[f64; 10]; 2], scalars: [f64; 2], precision: f64) -> Problem
             .collect(),
         known: Vec::new(),
         bounds: Vec::new(),
+        mirrors: Vec::new(),
         weight: 1e-3,
     }
 }
@@ -160,4 +161,35 @@ fn box_that_no_body_is_inside_of_is_named() {
         matches!(wrong, Err(PhysicalError::Value { .. })),
         "{wrong:?}"
     );
+}
+
+#[test]
+fn symmetric_link_has_no_products_with_the_normal_of_its_plane() {
+    let mut symmetric = problem(&bodies(), [0.05, -0.3], 1e6);
+    let free = symmetric.solve().unwrap();
+    // z is a direction of which the log sees nothing, y one of which it does.
+    let mirror = |normal| Mirror { link: 0, normal };
+    symmetric.mirrors = vec![mirror(2)];
+    let found = symmetric.solve().unwrap();
+    let [_, _, xz, _, yz, _, _, my, mz, _] = found.links[0];
+    assert_eq!([xz, yz, mz], [0.0; 3]);
+    assert!((my - free.links[0][7]).abs() < 1e-3 && found.distance < 1.0);
+    symmetric.mirrors.push(mirror(1));
+    let found = symmetric.solve().unwrap();
+    let [_, xy, _, _, yz, _, _, my, _, _] = found.links[0];
+    assert_eq!([xy, yz, my], [0.0; 3]);
+    // Its first moment along y was seen, and is far from zero.
+    assert!(found.distance > 100.0);
+    assert!(Pseudo::of(&found.links[0]).exists());
+    symmetric.mirrors = vec![mirror(3)];
+    assert!(matches!(
+        symmetric.solve(),
+        Err(PhysicalError::Value { .. })
+    ));
+    symmetric.mirrors = vec![mirror(1)];
+    symmetric.bounds = vec![bound(0, [0.2, 0.5, 0.0], [0.25, 0.2, 0.2])];
+    assert!(matches!(
+        symmetric.solve(),
+        Err(PhysicalError::Beside { .. })
+    ));
 }
