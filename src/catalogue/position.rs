@@ -140,19 +140,21 @@ fn eccentricity(along: &Along<'_>, joints: &[usize], shape: &[f64]) -> Vec<Torqu
     let (&[joint], &[n]) = (joints, shape) else {
         return Vec::new();
     };
-    // sin(N q + phase), with phase pi/2 for the cosine.
-    let wave = |symbol: &str, phase: f64| {
-        let mut by = Displacement::with_capacity(along.len());
-        for i in 0..along.len() {
-            let (qd, qdd) = (along.signals.qd[joint][i], along.signals.qdd[joint][i]);
-            let (sin, cos) = (n * along.signals.q[joint][i] + phase).sin_cos();
+    let len = along.len();
+    let mut both = [(); 2].map(|()| Displacement::with_capacity(len));
+    for i in 0..len {
+        let (qd, qdd) = (along.signals.qd[joint][i], along.signals.qdd[joint][i]);
+        let (sin, cos) = (n * along.signals.q[joint][i]).sin_cos();
+        // The sine, and the sine a quarter of a turn ahead.
+        for (by, (sin, cos)) in both.iter_mut().zip([(sin, cos), (cos, -sin)]) {
             by.push(sin, n * qd * cos, n * qdd * cos - n * n * qd * qd * sin);
         }
-        TorqueColumn {
-            name: format!("{symbol}{}", joint + 1),
-            unit: "rad",
-            torque: along.displaced(joint, &by),
-        }
+    }
+    let named = ["ECS", "ECC"].into_iter().zip(both);
+    let column = |(symbol, by): (&str, Displacement)| TorqueColumn {
+        name: format!("{symbol}{}", joint + 1),
+        unit: "rad",
+        torque: along.displaced(joint, &by),
     };
-    vec![wave("ECS", 0.0), wave("ECC", std::f64::consts::FRAC_PI_2)]
+    named.map(column).collect()
 }

@@ -81,12 +81,12 @@ pub(super) fn columns(
     of(&|t| x[t]);
     of(&|t| x[t] * x[t]);
     for n in 1..=HARMONICS {
-        let angle = |t: usize| n as f64 * turn * q[t];
-        of(&|t| angle(t).sin());
-        of(&|t| angle(t).cos());
+        let waves: Vec<(f64, f64)> = q.iter().map(|q| (n as f64 * turn * q).sin_cos()).collect();
+        of(&|t| waves[t].0);
+        of(&|t| waves[t].1);
         if n <= 4 {
-            of(&|t| side[t] * angle(t).sin());
-            of(&|t| side[t] * angle(t).cos());
+            of(&|t| side[t] * waves[t].0);
+            of(&|t| side[t] * waves[t].1);
         }
     }
     all.extend(drifts(&s, &side, &v));
