@@ -152,9 +152,20 @@ impl Stepwise<'_> {
             );
         }
         self.matters(contender, state, &next)?;
-        let Some((confirm, beside)) = self.confirm else {
-            return Ok(next);
-        };
+        if let Some(other) = self.confirm {
+            self.keeps_its_promise(contender, (state, &next), other)?;
+        }
+        Ok(next)
+    }
+
+    /// Whether what a contender changes is what another motion lacks; `beside` is that motion
+    /// without noise.
+    fn keeps_its_promise(
+        &self,
+        contender: &Contender,
+        (state, next): (&State, &State),
+        (confirm, beside): (&Joined, &Joined),
+    ) -> Result<(), String> {
         let joints = contender.candidate.columns.iter();
         let joints: Vec<usize> = joints.flat_map(|c| c.0.iter().map(|p| p.0)).collect();
         let before = self.bench.rows(state, confirm);
@@ -172,9 +183,9 @@ impl Stepwise<'_> {
             let change = (share * along, share * share * square);
             kept(confirm, &joints, (&before, &after), change, hidden)
         };
-        let after = self.bench.rows(&next, confirm);
+        let after = self.bench.rows(next, confirm);
         let smooth = || {
-            let [without, with] = [state, &next].map(|state| self.bench.rows(state, beside));
+            let [without, with] = [state, next].map(|state| self.bench.rows(state, beside));
             changed(&before, &without, &with)
         };
         if contender.margin <= 0.0 {
@@ -184,7 +195,6 @@ impl Stepwise<'_> {
         // Along the measured motion, or, where its noise drowns the columns, along one without.
         kept(&after)
             .or_else(|broken| kept(&smooth()).map_err(|_| broken))
-            .map(|()| next)
             .map_err(|broken| broken.why(contender.gain.square))
     }
 
