@@ -1,6 +1,7 @@
 //! The regressor D of an arm, sines and cosines included: ns per sample of the generated function,
-//! one sample at a time and in lanes, of the module as the identification calls it, and of the
-//! interpreter. Rounds alternate between them, and the fastest counts.
+//! one sample at a time, in lanes of what the program was compiled for and in vectors as wide as
+//! those of the machine, of the module as the identification calls it, and of the interpreter.
+//! Rounds alternate between them, and the fastest counts.
 //!
 //! `cargo bench --bench regressor`; with `RUSTFLAGS="-C target-cpu=native"` for what this machine
 //! can do. `benches/side_by_side/regressor.py` times the rigid columns beside other libraries.
@@ -12,13 +13,13 @@ use std::time::Instant;
 
 use idim::interpreted::Interpreter;
 use idim::robots;
-use idim::runtime::batch::Block;
+use idim::runtime::lane::{Arch, Simd, Vector, WithSimd, f64x4};
 use idim::runtime::model::{IdentificationModel, Output, States};
 
 /// Samples of one pass, as many as the identification evaluates at once.
 const SAMPLES: usize = 384;
 
-/// Samples of a [`Block`].
+/// Samples of an [`f64x4`].
 const LANES: usize = 4;
 
 /// Passes in a row that are timed as one, and how often.
@@ -56,17 +57,37 @@ macro_rules! arm {
             let one = |series: &[f64], i: usize| -> [f64; JOINTS] {
                 from_fn(|joint| series[joint * SAMPLES + i])
             };
-            let block = |series: &[f64], i: usize| -> [Block; JOINTS] {
-                from_fn(|joint| Block::from(from_fn(|lane| series[joint * SAMPLES + i + lane])))
+            let block = |series: &[f64], i: usize| -> [f64x4; JOINTS] {
+                from_fn(|joint| f64x4::from(from_fn(|lane| series[joint * SAMPLES + i + lane])))
             };
+            struct Vectors<'a>(&'a States<'a>);
+            impl WithSimd for Vectors<'_> {
+                type Output = ();
+                #[inline(always)]
+                fn with_simd<S: Simd>(self, simd: S) {
+                    let States { q, qd, qdd, .. } = *self.0;
+                    let mut d = [[Vector::splat(simd, 0.0); PARAMETERS]; JOINTS];
+                    for i in (0..SAMPLES).step_by(S::F64_LANES) {
+                        let mut state = [[d[0][0]; JOINTS]; 3];
+                        for (state, series) in state.iter_mut().zip([q, qd, qdd]) {
+                            for (joint, lanes) in state.iter_mut().enumerate() {
+                                *lanes = Vector::from_slice(simd, &series[joint * SAMPLES + i..]);
+                            }
+                        }
+                        let [q, qd, qdd] = state;
+                        explicit(&State::new(q, qd, qdd), &mut d);
+                        black_box(&mut d);
+                    }
+                }
+            }
             let mut d = [[0.0; PARAMETERS]; JOINTS];
-            let mut lanes = [[Block::ZERO; PARAMETERS]; JOINTS];
+            let mut lanes = [[f64x4::ZERO; PARAMETERS]; JOINTS];
             let signals = Model.pattern(Output::Explicit).signals;
             let [mut generated, mut tape] = [(); 2].map(|()| vec![0.0; signals * SAMPLES]);
             let Some(interpreter) = interpreter(NAME) else {
                 return;
             };
-            let contenders: [Contender<'_>; 4] = [
+            let contenders: [Contender<'_>; 5] = [
                 (
                     "generated, one sample",
                     Box::new(|| {
@@ -85,6 +106,10 @@ macro_rules! arm {
                             black_box(&mut lanes);
                         }
                     }),
+                ),
+                (
+                    "generated, widest vectors",
+                    Box::new(|| Arch::new().dispatch(Vectors(&states))),
                 ),
                 (
                     "generated, as identified with",

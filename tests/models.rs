@@ -25,6 +25,13 @@ struct Dual {
     rate: f64,
 }
 
+impl Dual {
+    const ZERO: Dual = Dual {
+        value: 0.0,
+        rate: 0.0,
+    };
+}
+
 impl Add for Dual {
     type Output = Dual;
     fn add(self, other: Dual) -> Dual {
@@ -63,7 +70,7 @@ impl Neg for Dual {
     }
 }
 impl Lane for Dual {
-    fn splat(value: f64) -> Dual {
+    fn splat(self, value: f64) -> Dual {
         Dual { value, rate: 0.0 }
     }
     fn sin_cos(self) -> (Dual, Dual) {
@@ -80,7 +87,7 @@ impl Lane for Dual {
         )
     }
     fn sign(self) -> Dual {
-        Dual::splat(Lane::sign(self.value))
+        self.splat(Lane::sign(self.value))
     }
     fn abs(self) -> Dual {
         Dual {
@@ -176,8 +183,8 @@ macro_rules! identities {
                     let [q, qd, qdd] = arrays::<JOINTS>(&mut generator);
                     let d = explicit_at(q, qd, qdd);
                     let along = State::new(duals(q, qd), duals(qd, qdd), duals(qdd, [0.0; JOINTS]));
-                    let mut h = [Dual::splat(0.0); PARAMETERS];
-                    let mut dh = [Dual::splat(0.0); PARAMETERS];
+                    let mut h = [Dual::ZERO; PARAMETERS];
+                    let mut dh = [Dual::ZERO; PARAMETERS];
                     energy(&along, &mut h);
                     power(&along, &mut dh);
                     for column in 0..PARAMETERS {
@@ -215,7 +222,7 @@ macro_rules! identities {
                 qd: [f64; JOINTS],
                 qdd: [f64; JOINTS],
             ) -> (Matrix<Dual>, Matrix<Dual>) {
-                let zero = [[Dual::splat(0.0); PARAMETERS]; JOINTS];
+                let zero = [[Dual::ZERO; PARAMETERS]; JOINTS];
                 let (mut p, mut r) = (zero, zero);
                 let x = State::new(duals(q, qd), duals(qd, qdd), duals(qdd, [0.0; JOINTS]));
                 implicit(&x, &mut p, &mut r);

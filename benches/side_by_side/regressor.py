@@ -99,10 +99,10 @@ def rigid(robot, folder, idim):
 
 def crate(folder, target):
     """The generated Rust with those modules of the runtime that it needs."""
-    runtime = "".join(f'#[path = "{ROOT}/runtime/src/{name}.rs"] pub mod {name};\n' for name in ("batch", "knowledge", "lane", "model", "settings"))
+    runtime = "".join(f'#[path = "{ROOT}/runtime/src/{name}.rs"] pub mod {name};\n' for name in ("batch", "knowledge", "model", "settings")) + "pub use idim_lanes as lane;\n"
     for path, text in {
         "Cargo.toml": '[package]\nname = "idim-regressor"\nedition = "2024"\n[dependencies]\nidim_runtime.path = "runtime"\n[workspace]\nmembers = ["runtime"]\n',
-        "runtime/Cargo.toml": '[package]\nname = "idim_runtime"\nedition = "2024"\n[dependencies]\nwide = "1.7"\nserde = { version = "1", features = ["derive"] }\n',
+        "runtime/Cargo.toml": '[package]\nname = "idim_runtime"\nedition = "2024"\n[dependencies]\nidim-lanes.path = "' + str(ROOT) + '/lanes"\nserde = { version = "1", features = ["derive"] }\n',
         "runtime/src/lib.rs": runtime,
         "src/main.rs": (SOURCES / "idim.rs").read_text(),
         "src/robot.rs": (folder / "robot.rs").read_text(),

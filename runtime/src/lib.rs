@@ -13,7 +13,6 @@ pub mod evidence;
 pub mod excite;
 pub mod identify;
 pub mod knowledge;
-pub mod lane;
 pub mod log;
 pub mod model;
 pub mod observe;
@@ -23,6 +22,8 @@ pub mod report;
 pub mod settings;
 pub mod signal;
 pub mod simulate;
+
+pub use idim_lanes as lane;
 
 /// Includes the generated module of a robot by its name; the build script made it with
 /// `idim_codegen::Builder`.

@@ -1,4 +1,4 @@
-//! The Rust that idim generates: `program STATES RESULTS one|lanes`, as `harness.h` has it.
+//! The Rust that idim generates: `program STATES RESULTS one|lanes|batch`, as `harness.h` has it.
 
 #[path = "robot.rs"]
 #[allow(dead_code)]
@@ -8,13 +8,13 @@ use std::array::from_fn;
 use std::hint::black_box;
 use std::time::Instant;
 
-use idim_runtime::batch::Block;
-use robot::{JOINTS, PARAMETERS, State, explicit};
+use idim_runtime::lane::{Arch, Simd, Vector, WithSimd};
+use idim_runtime::model::{IdentificationModel, Output, States};
+use robot::{JOINTS, Model, PARAMETERS, State, explicit};
 
 const SAMPLES: usize = 256;
 const PASSES: usize = 20;
 const TIMINGS: usize = 20;
-const LANES: usize = 4;
 
 type Sample = [[f64; JOINTS]; 3];
 
@@ -31,14 +31,17 @@ fn main() {
             one(&samples, &mut d, |d| results.extend(d.iter().flatten().copied()));
             fastest(|| one(&samples, &mut d, |d| _ = black_box(d)))
         }
+        "lanes" => {
+            let series = series(&samples);
+            Arch::new().dispatch(Lanes(&series, |d| results.extend(d)));
+            fastest(|| Arch::new().dispatch(Lanes(&series, |_| ())))
+        }
         _ => {
-            let blocks: Vec<[[Block; JOINTS]; 3]> = samples.chunks_exact(LANES).map(block).collect();
-            let mut d = [[Block::ZERO; PARAMETERS]; JOINTS];
-            lanes(&blocks, &mut d, |d| {
-                let values: Vec<[f64; LANES]> = d.iter().flatten().map(|x| x.to_array()).collect();
-                (0..LANES).for_each(|lane| results.extend(values.iter().map(|x| x[lane])));
-            });
-            fastest(|| lanes(&blocks, &mut d, |d| _ = black_box(d)))
+            let series = series(&samples);
+            let mut signals = vec![0.0; Model.pattern(Output::Explicit).signals * SAMPLES];
+            batch(&series, &mut signals);
+            results = dense(&signals);
+            fastest(|| batch(&series, black_box(&mut signals)))
         }
     };
     let bytes: Vec<u8> = results.iter().flat_map(|x| x.to_le_bytes()).collect();
@@ -46,8 +49,9 @@ fn main() {
     println!("{best:.2}");
 }
 
-fn block(samples: &[Sample]) -> [[Block; JOINTS]; 3] {
-    from_fn(|k| from_fn(|joint| Block::from(from_fn(|lane| samples[lane][k][joint]))))
+/// q, qd, qdd joint by joint.
+fn series(samples: &[Sample]) -> [Vec<f64>; 3] {
+    from_fn(|k| (0..JOINTS * SAMPLES).map(|at| samples[at % SAMPLES][k][at / SAMPLES]).collect())
 }
 
 fn one(samples: &[Sample], d: &mut [[f64; PARAMETERS]; JOINTS], mut each: impl FnMut(&mut [[f64; PARAMETERS]; JOINTS])) {
@@ -57,11 +61,49 @@ fn one(samples: &[Sample], d: &mut [[f64; PARAMETERS]; JOINTS], mut each: impl F
     }
 }
 
-fn lanes(blocks: &[[[Block; JOINTS]; 3]], d: &mut [[Block; PARAMETERS]; JOINTS], mut each: impl FnMut(&mut [[Block; PARAMETERS]; JOINTS])) {
-    for &[q, qd, qdd] in blocks {
-        explicit(&State::new(q, qd, qdd), d);
-        each(d);
+/// D of all samples, as many at a time as the vectors of the machine hold; hands on what it is of
+/// each sample.
+struct Lanes<'a, F>(&'a [Vec<f64>; 3], F);
+
+impl<F: FnMut(Vec<f64>)> WithSimd for Lanes<'_, F> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(mut self, simd: S) {
+        let keeps = size_of::<F>() > 0;
+        let mut d = [[Vector::splat(simd, 0.0); PARAMETERS]; JOINTS];
+        for i in (0..SAMPLES).step_by(S::F64_LANES) {
+            let mut state = [[d[0][0]; JOINTS]; 3];
+            for (state, series) in state.iter_mut().zip(self.0) {
+                for (joint, lanes) in state.iter_mut().enumerate() {
+                    *lanes = Vector::from_slice(simd, &series[joint * SAMPLES + i..]);
+                }
+            }
+            let [q, qd, qdd] = state;
+            explicit(&State::new(q, qd, qdd), &mut d);
+            let d = black_box(&mut d);
+            for lane in (0..S::F64_LANES).filter(|_| keeps) {
+                self.1(d.iter().flatten().map(|x| x.values()[lane]).collect());
+            }
+        }
     }
+}
+
+/// The signals of D, as the identification asks for them.
+fn batch(series: &[Vec<f64>; 3], signals: &mut [f64]) {
+    let [q, qd, qdd] = series;
+    Model.evaluate(Output::Explicit, &States { len: SAMPLES, q, qd, qdd, slip: &[] }, signals);
+}
+
+/// D row by row, sample by sample.
+fn dense(signals: &[f64]) -> Vec<f64> {
+    let mut d = vec![0.0; SAMPLES * JOINTS * PARAMETERS];
+    for entry in Model.pattern(Output::Explicit).entries.iter() {
+        for i in 0..SAMPLES {
+            d[(i * JOINTS + entry.row) * PARAMETERS + entry.column] = signals[entry.signal * SAMPLES + i];
+        }
+    }
+    d
 }
 
 /// ns per sample of the fastest of all timings.

@@ -8,7 +8,7 @@
 mod assembler;
 mod run;
 
-use pulp::Arch;
+use idim_lanes::Arch;
 
 use super::graph::{Expr, Function, Graph, Input};
 use super::schedule::order;

@@ -1,6 +1,6 @@
 //! Bodies of functions in Rust: over a `State<T>` named `x`, for any lane type `T`.
 
-use proc_macro2::{Literal, TokenStream};
+use proc_macro2::{Literal, TokenStream, TokenTree};
 use quote::{format_ident, quote};
 
 use super::{comment, parsed};
@@ -50,7 +50,7 @@ impl Language for Rust {
     }
 
     fn number(&self, value: f64) -> String {
-        format!("T::splat({})", Literal::f64_unsuffixed(value))
+        format!("x.constant({})", Literal::f64_unsuffixed(value))
     }
 
     fn divides(&self) -> bool {
@@ -139,6 +139,7 @@ pub fn beside(robot: &Robot, function: &Function) -> Result<TokenStream, String>
     ];
     Ok(quote! {
         #(#[doc = #docs])*
+        #[inline(always)]
         pub fn #name<T: Lane>(x: &State<T>, #parameters #argument: &mut #array) { #body }
 
         #parts
@@ -165,36 +166,53 @@ fn written(body: &Body, name: &str, types: &[(&str, TokenStream)]) -> Result<Cod
     }
     let length = Literal::usize_unsuffixed(body.live);
     let mut code = Code {
-        body: quote! { let mut live = [T::splat(0.0); #length]; },
+        body: quote! { let mut live = [x.constant(0.0); #length]; },
         parts: TokenStream::new(),
     };
     for (index, part) in body.parts.iter().enumerate() {
         let name = format_ident!("{name}_{}", index + 1);
-        let state = part.reads_state.then(|| quote! { x, });
-        let taken = part.reads_state.then(|| quote! { x: &State<T>, });
         let reads = |input: &Input| matches!(input, Input::Parameter(_));
         let reads = part.inputs.iter().any(reads);
-        let values = reads.then(|| quote! { parameters, });
-        let told = reads.then(|| quote! { parameters: &[T; PARAMETERS], });
-        let outputs = part.outputs();
-        let outputs = types
+        let stored = part.outputs();
+        let stored = types
             .iter()
-            .filter(|(argument, _)| outputs.contains(argument));
-        let (given, outputs): (Vec<_>, Vec<_>) = outputs
-            .map(|(argument, array)| {
-                let argument = format_ident!("{argument}");
-                (quote! { #argument }, quote! { #argument: &mut #array })
-            })
-            .unzip();
+            .filter(|(argument, _)| stored.contains(argument));
         let statements: TokenStream = part.lines.iter().map(line).collect::<Result<_, _>>()?;
+        // What it takes: name, type, and how the caller hands it on.
+        let mut arguments = vec![];
+        if names(&statements, "x") {
+            arguments.push((format_ident!("x"), quote! { &State<T> }, quote! { x }));
+        }
+        if reads {
+            let name = format_ident!("parameters");
+            arguments.push((name, quote! { &[T; PARAMETERS] }, quote! { parameters }));
+        }
+        let live = format_ident!("live");
+        arguments.push((live, quote! { &mut [T; #length] }, quote! { &mut live }));
+        for (argument, array) in stored {
+            let name = format_ident!("{argument}");
+            arguments.push((name.clone(), quote! { &mut #array }, quote! { &mut *#name }));
+        }
+        let taken = arguments.iter().map(|(name, _, _)| name);
+        let types = arguments.iter().map(|(_, array, _)| array);
+        let given = arguments.iter().map(|(_, _, given)| given);
         code.body
-            .extend(quote! { #name(#state #values &mut live, #(#given),*); });
+            .extend(quote! { x.q[0].apart(#name, (#(#given,)*)); });
         code.parts.extend(quote! {
-            #[inline(never)]
-            fn #name<T: Lane>(#taken #told live: &mut [T; #length], #(#outputs),*) { #statements }
+            #[inline(always)]
+            fn #name<T: Lane>((#(#taken,)*): (#(#types,)*)) { #statements }
         });
     }
     Ok(code)
+}
+
+/// Whether a word is among the tokens.
+fn names(tokens: &TokenStream, word: &str) -> bool {
+    tokens.clone().into_iter().any(|token| match token {
+        TokenTree::Ident(name) => name == word,
+        TokenTree::Group(group) => names(&group.stream(), word),
+        _ => false,
+    })
 }
 
 fn line(line: &Line) -> Result<TokenStream, String> {
@@ -211,7 +229,7 @@ fn line(line: &Line) -> Result<TokenStream, String> {
         Line::Constant { name, value } => {
             let name = format_ident!("{name}");
             let value = Literal::f64_unsuffixed(*value);
-            quote! { let #name = T::splat(#value); }
+            quote! { let #name = x.constant(#value); }
         }
         Line::Value { name, value } => {
             let (name, value) = (format_ident!("{name}"), parsed(value)?);

@@ -16,7 +16,7 @@ use super::summary::summary;
 use crate::robot::{Output, Robot};
 
 /// Version of the contract with the runtime that emitted code asks for.
-const ABI: u32 = 1;
+const ABI: u32 = 2;
 
 /// The Rust source of a robot's module.
 ///
@@ -61,7 +61,7 @@ fn imports() -> TokenStream {
     quote! {
         use std::borrow::Cow;
 
-        use ::idim_runtime::batch::Block;
+        use ::idim_runtime::batch::{self, Motion};
         use ::idim_runtime::knowledge::{Knowledge, Term};
         use ::idim_runtime::lane::Lane;
         use ::idim_runtime::model::{
@@ -114,6 +114,7 @@ fn functions(robot: &Robot) -> Result<TokenStream, String> {
         #[doc = ""]
         #[doc = " Writes the entries that are not always zero; `d[joint][column]`, N m or N per unit"]
         #[doc = " of the parameter."]
+        #[inline(always)]
         pub fn explicit<T: Lane>(x: &State<T>, d: &mut [[T; PARAMETERS]; JOINTS]) { #d }
 
         #d_parts
@@ -121,6 +122,7 @@ fn functions(robot: &Robot) -> Result<TokenStream, String> {
         #[doc = " P and R of the implicit model tau = d/dt(P X) + R X (Gautier 1996, eqs. 7-9)."]
         #[doc = ""]
         #[doc = " Writes the entries that are not always zero; needs no acceleration."]
+        #[inline(always)]
         pub fn implicit<T: Lane>(
             x: &State<T>,
             p: &mut [[T; PARAMETERS]; JOINTS],
@@ -130,11 +132,13 @@ fn functions(robot: &Robot) -> Result<TokenStream, String> {
         #pr_parts
 
         #[doc = " h, the energies: qd . tau = (dh/dt) X + the powers (Gautier 1996, eq. 10), J."]
+        #[inline(always)]
         pub fn energy<T: Lane>(x: &State<T>, h: &mut [T; PARAMETERS]) { #h }
 
         #h_parts
 
         #[doc = " dh of the columns that have no energy of the state (friction), W."]
+        #[inline(always)]
         pub fn power<T: Lane>(x: &State<T>, dh: &mut [T; PARAMETERS]) { #dh }
 
         #dh_parts
@@ -219,17 +223,9 @@ fn model(robot: &Robot) -> TokenStream {
     let name = &robot.mechanism.name;
     let doc = format!(" `{name}` as the runtime sees it.");
     let memory = presliding(robot);
-    let (run, state, arguments) = match memory.is_empty() {
-        true => (
-            quote! { run },
-            quote! { State::new(q, qd, qdd) },
-            quote! { q, qd, qdd, sink },
-        ),
-        false => (
-            quote! { run_with_slip },
-            quote! { State::new(q, qd, qdd).with_slip(slip) },
-            quote! { q, qd, qdd, slip, sink },
-        ),
+    let state = match memory.is_empty() {
+        true => quote! { State::new(motion.q, motion.qd, motion.qdd) },
+        false => quote! { State::new(motion.q, motion.qd, motion.qdd).with_slip(motion.slip) },
     };
     quote! {
         #[doc = #doc]
@@ -263,35 +259,37 @@ fn model(robot: &Robot) -> TokenStream {
             }
             #memory
             fn evaluate(&self, output: Output, states: &States<'_>, signals: &mut [f64]) {
-                let zero = <Block as Lane>::splat(0.0);
-                let mut first = [[zero; PARAMETERS]; JOINTS];
-                let mut second = first;
-                let mut row = [[zero; PARAMETERS]; 1];
-                ::idim_runtime::batch::#run(states, signals, |#arguments| {
-                    let x = #state;
-                    match output {
-                        Output::Explicit => {
-                            explicit(&x, &mut first);
-                            sink.store(&first, &EXPLICIT_SIGNALS);
-                        }
-                        Output::Momentum => {
-                            implicit(&x, &mut first, &mut second);
-                            sink.store(&first, &MOMENTUM_SIGNALS);
-                        }
-                        Output::Rest => {
-                            implicit(&x, &mut first, &mut second);
-                            sink.store(&second, &REST_SIGNALS);
-                        }
-                        Output::Energy => {
-                            energy(&x, &mut row[0]);
-                            sink.store(&row, &ENERGY_SIGNALS);
-                        }
-                        Output::Power => {
-                            power(&x, &mut row[0]);
-                            sink.store(&row, &POWER_SIGNALS);
-                        }
-                    }
-                });
+                let places: &[(usize, usize)] = match output {
+                    Output::Explicit => &EXPLICIT_SIGNALS,
+                    Output::Momentum => &MOMENTUM_SIGNALS,
+                    Output::Rest => &REST_SIGNALS,
+                    Output::Energy => &ENERGY_SIGNALS,
+                    Output::Power => &POWER_SIGNALS,
+                };
+                batch::evaluate::<Model, JOINTS, PARAMETERS>(output, places, states, signals);
+            }
+        }
+
+        impl batch::Functions<JOINTS, PARAMETERS> for Model {
+            #[inline(always)]
+            fn explicit<T: Lane>(motion: Motion<T, JOINTS>, d: &mut [[T; PARAMETERS]; JOINTS]) {
+                explicit(&#state, d);
+            }
+            #[inline(always)]
+            fn implicit<T: Lane>(
+                motion: Motion<T, JOINTS>,
+                p: &mut [[T; PARAMETERS]; JOINTS],
+                r: &mut [[T; PARAMETERS]; JOINTS],
+            ) {
+                implicit(&#state, p, r);
+            }
+            #[inline(always)]
+            fn energy<T: Lane>(motion: Motion<T, JOINTS>, h: &mut [T; PARAMETERS]) {
+                energy(&#state, h);
+            }
+            #[inline(always)]
+            fn power<T: Lane>(motion: Motion<T, JOINTS>, dh: &mut [T; PARAMETERS]) {
+                power(&#state, dh);
             }
         }
     }

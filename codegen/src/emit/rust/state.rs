@@ -20,7 +20,7 @@ pub fn state(robot: &Robot) -> Result<TokenStream, String> {
         let text = trig.text();
         let sum = trig.code(
             |joint| format!("q[{joint}]"),
-            |value| format!("T::splat({})", Literal::f64_unsuffixed(value)),
+            |value| format!("q[0].splat({})", Literal::f64_unsuffixed(value)),
         );
         let sum = parsed(&if trig.is_plain() {
             sum
@@ -66,7 +66,7 @@ fn definition(
     bindings: &TokenStream,
     names: &TokenStream,
 ) -> TokenStream {
-    let [slip_field, slip_value, with_slip] = slip(robot);
+    let [slip_field, slip_value, slip_name, with_slip] = slip(robot);
     quote! {
         #[doc = " A state of the robot, with the sines and cosines that all outputs share."]
         #[derive(Clone, Copy, Debug)]
@@ -83,19 +83,25 @@ fn definition(
 
         impl<T: Lane> State<T> {
             #[doc = " Computes each sine and cosine once."]
-            #[inline]
+            #[inline(always)]
             pub fn new(q: [T; JOINTS], qd: [T; JOINTS], qdd: [T; JOINTS]) -> Self {
+                #slip_value
                 #bindings
-                State { q, qd, qdd, #slip_value #names }
+                State { q, qd, qdd, #slip_name #names }
             }
             #with_slip
+            #[doc = " The same constant in every lane."]
+            #[inline(always)]
+            pub fn constant(&self, value: f64) -> T {
+                self.q[0].splat(value)
+            }
         }
     }
 }
 
 /// The presliding states as a field, as the constructor sets them, and how a caller does; empty
 /// for a robot whose friction has no memory.
-fn slip(robot: &Robot) -> [TokenStream; 3] {
+fn slip(robot: &Robot) -> [TokenStream; 4] {
     if robot.mechanism.presliding().next().is_none() {
         return Default::default();
     }
@@ -104,10 +110,16 @@ fn slip(robot: &Robot) -> [TokenStream; 3] {
             #[doc = " Presliding states z/zs; the signs of the velocities in sliding."]
             pub slip: [T; JOINTS],
         },
-        quote! { slip: qd.map(Lane::sign), },
+        quote! {
+            let mut slip = qd;
+            for slip in &mut slip {
+                *slip = slip.sign();
+            }
+        },
+        quote! { slip, },
         quote! {
             #[doc = " With presliding states, dz/dt = qd - |qd| z/zs, instead of those of sliding."]
-            #[inline]
+            #[inline(always)]
             pub fn with_slip(self, slip: [T; JOINTS]) -> Self {
                 State { slip, ..self }
             }

@@ -1,7 +1,6 @@
 //! A tape at work, on the widest vectors of the machine.
 
-use pulp::{Simd, WithSimd};
-use wide::f64x4;
+use idim_lanes::{Lane, Simd, Vector, WithSimd};
 
 use super::{Batch, Op, Step, Tape, WIDTH};
 use crate::expr::graph::{Function, Input};
@@ -35,12 +34,12 @@ impl WithSimd for Run<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: Simd>(mut self, _: S) {
+    fn with_simd<S: Simd>(mut self, simd: S) {
         let mut start = 0;
         while start < self.batch.len {
             let width = WIDTH.min(self.batch.len - start);
             for step in &self.tape.steps {
-                self.step(step, start, width);
+                self.step(simd, step, start, width);
             }
             start += width;
         }
@@ -49,14 +48,14 @@ impl WithSimd for Run<'_> {
 
 impl Run<'_> {
     #[inline(always)]
-    fn step(&mut self, step: &Step, start: usize, width: usize) {
+    fn step<S: Simd>(&mut self, simd: S, step: &Step, start: usize, width: usize) {
         let target = step.target;
         match step.op {
             Op::Constant(value) => self.registers[target] = Register::ZERO.map(|_| value),
             Op::Input(input) => self.registers[target] = read(self.batch, input, start, width),
             Op::SinCos(angle, cosine) => {
                 let angle = self.angle(angle, start, width);
-                let (sin, cos) = sin_cos(&angle, width);
+                let (sin, cos) = sin_cos(simd, &angle, width);
                 self.registers[cosine] = cos;
                 self.registers[target] = sin;
             }
@@ -67,10 +66,10 @@ impl Run<'_> {
             Op::MulSub(a, b, c) => self.combine(target, [a, b, c], width, |x, y, z| x * y - z),
             Op::SubMul(a, b, c) => self.combine(target, [a, b, c], width, |x, y, z| z - x * y),
             Op::Call(Function::Sine, a) => {
-                self.registers[target] = sin_cos(&self.registers[a], width).0;
+                self.registers[target] = sin_cos(simd, &self.registers[a], width).0;
             }
             Op::Call(Function::Cosine, a) => {
-                self.registers[target] = sin_cos(&self.registers[a], width).1;
+                self.registers[target] = sin_cos(simd, &self.registers[a], width).1;
             }
             Op::Call(Function::Sign, a) => {
                 self.combine(target, [a; 3], width, |x, _, _| sign(x));
@@ -170,13 +169,15 @@ fn read_series(
 
 /// Sines and cosines of the first `width` values.
 #[inline(always)]
-fn sin_cos(angles: &Register, width: usize) -> (Register, Register) {
+fn sin_cos<S: Simd>(simd: S, angles: &Register, width: usize) -> (Register, Register) {
     let (mut sin, mut cos) = (*angles, *angles);
-    let (sines, _) = sin.0.as_flattened_mut().as_chunks_mut::<4>();
-    let (cosines, _) = cos.0.as_flattened_mut().as_chunks_mut::<4>();
-    for (sin, cos) in sines.iter_mut().zip(cosines).take(width.div_ceil(4)) {
-        let (s, c) = f64x4::from(*sin).sin_cos();
-        (*sin, *cos) = (s.to_array(), c.to_array());
+    let lanes = S::F64_LANES;
+    let sines = sin.0.as_flattened_mut().chunks_exact_mut(lanes);
+    let cosines = cos.0.as_flattened_mut().chunks_exact_mut(lanes);
+    for (sin, cos) in sines.zip(cosines).take(width.div_ceil(lanes)) {
+        let (s, c) = Vector::from_slice(simd, sin).sin_cos();
+        sin.copy_from_slice(s.values());
+        cos.copy_from_slice(c.values());
     }
     (sin, cos)
 }
@@ -198,7 +199,7 @@ fn call(function: Function, x: f64) -> f64 {
         Function::Abs => x.abs(),
         Function::Tanh => x.tanh(),
         Function::Bell => (-x * x).exp(),
-        Function::Power(p) => x.abs().powf(f64::from_bits(p)),
+        Function::Power(p) => x.abs_power(f64::from_bits(p)),
         Function::Sine => x.sin(),
         Function::Cosine => x.cos(),
         Function::Reciprocal => x.recip(),
