@@ -38,9 +38,15 @@ pub trait Lane:
     /// Calls a part of a long function, compiled as a function of its own that runs with the
     /// instructions of these lanes; `self` only says what lanes they are.
     #[inline(never)]
-    fn apart<A>(self, part: impl FnOnce(A), arguments: A) {
-        part(arguments);
+    fn apart<A>(self, part: impl Part<A>, arguments: A) {
+        part.call(arguments);
     }
+}
+
+/// A part of a long function; to be always inlined, unlike a function that is handed over.
+pub trait Part<A> {
+    /// What it does.
+    fn call(self, arguments: A);
 }
 
 macro_rules! scalar {
@@ -226,15 +232,15 @@ mod tests {
 
     #[test]
     fn a_part_is_called_once_with_its_arguments() {
+        struct Push;
+        impl Part<(&mut Vec<f64>, f64)> for Push {
+            fn call(self, (calls, x): (&mut Vec<f64>, f64)) {
+                calls.push(x);
+            }
+        }
         let mut calls = vec![];
-        Vector::splat(Scalar, 0.0).apart(
-            |(calls, x): (&mut Vec<f64>, f64)| calls.push(x),
-            (&mut calls, 2.0),
-        );
-        0.0_f64.apart(
-            |(calls, x): (&mut Vec<f64>, f64)| calls.push(x),
-            (&mut calls, 3.0),
-        );
+        Vector::splat(Scalar, 0.0).apart(Push, (&mut calls, 2.0));
+        0.0_f64.apart(Push, (&mut calls, 3.0));
         assert_eq!(calls, [2.0, 3.0]);
     }
 }

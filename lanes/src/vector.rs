@@ -5,7 +5,7 @@ use std::ops::{Add, Mul, Neg, Sub};
 use bytemuck::{cast_slice, cast_slice_mut};
 use pulp::{Simd, WithSimd};
 
-use crate::{Lane, sine};
+use crate::{Lane, Part, sine};
 
 /// `S::F64_LANES` numbers in a vector of the instructions `S`: 8 with AVX-512, 4 with AVX2, 2 with
 /// NEON, else 1.
@@ -156,21 +156,21 @@ impl<S: Simd> Lane for Vector<S> {
         self.with(self.simd.sqrt_f64s(self.values))
     }
     #[inline(never)]
-    fn apart<A>(self, part: impl FnOnce(A), arguments: A) {
-        self.simd.vectorize(Part { part, arguments });
+    fn apart<A>(self, part: impl Part<A>, arguments: A) {
+        self.simd.vectorize(Call { part, arguments });
     }
 }
 
 /// A part of a function, to be called with the instructions of a vector.
-struct Part<F, A> {
-    part: F,
+struct Call<P, A> {
+    part: P,
     arguments: A,
 }
 
-impl<F: FnOnce(A), A> WithSimd for Part<F, A> {
+impl<P: Part<A>, A> WithSimd for Call<P, A> {
     type Output = ();
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        (self.part)(self.arguments);
+        self.part.call(self.arguments);
     }
 }

@@ -194,13 +194,18 @@ fn written(body: &Body, name: &str, types: &[(&str, TokenStream)]) -> Result<Cod
             arguments.push((name.clone(), quote! { &mut #array }, quote! { &mut *#name }));
         }
         let taken = arguments.iter().map(|(name, _, _)| name);
-        let types = arguments.iter().map(|(_, array, _)| array);
+        let types: Vec<_> = arguments.iter().map(|(_, array, _)| array).collect();
         let given = arguments.iter().map(|(_, _, given)| given);
         code.body
             .extend(quote! { x.q[0].apart(#name, (#(#given,)*)); });
         code.parts.extend(quote! {
-            #[inline(always)]
-            fn #name<T: Lane>((#(#taken,)*): (#(#types,)*)) { #statements }
+            #[allow(non_camel_case_types)]
+            struct #name;
+
+            impl<T: Lane> ::idim_runtime::lane::Part<(#(#types,)*)> for #name {
+                #[inline(always)]
+                fn call(self, (#(#taken,)*): (#(#types,)*)) { #statements }
+            }
         });
     }
     Ok(code)
