@@ -63,6 +63,7 @@ fn urdf_dropped_into_robots_becomes_a_built_in_robot() {
         "build.rs",
         "src",
         "codegen",
+        "lanes",
         "runtime",
         "robots",
         "benches",

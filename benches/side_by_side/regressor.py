@@ -9,7 +9,8 @@ taken with its rigid-body columns alone. Pinocchio is the library of its wheel (
 link; not built for this very machine), called from Python; the call costs less than the regressor of an
 arm of one joint, timed, too, which is taken off before ratios. CasADi is the C generated from
 Newton-Euler's equations in SX, common terms shared, of all columns and of idim's base columns; idim is
-its generated C and its generated Rust, one sample at a time and in lanes of four. Compilers of these:
+its generated C and its generated Rust, one sample at a time, in lanes as wide as the machine's
+vectors, and as identification asks for it (signals of a chunk, planar). Compilers of these:
 `-O3 -march=native -DNDEBUG` and `-C target-cpu=native`. Every one writes its whole result, which stays
 in cache. Results are compared before times are. Linux, gcc, cargo.
 """
@@ -31,7 +32,7 @@ import pinocchio as pin
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
 SOURCES = HERE / "regressor"
-SAMPLES = 256
+SAMPLES = 264  # no power of two: planar columns would fall on each other in the cache
 STANDARD = ["M", "MX", "MY", "MZ", "XX", "XY", "YY", "XZ", "YZ", "ZZ"]  # Pinocchio's order
 CALL = "pinocchio, 1 joint"
 FLAGS = ["-O3", "-march=native", "-DNDEBUG"]
@@ -160,7 +161,8 @@ def contenders(arm, columns, folder, target):
         yield f"CasADi C, {name} columns", ([folder / f"casadi_{name}.exe"], full)
     yield "idim C, one sample", ([folder / "c.exe"], dense)
     yield "idim Rust, one sample", ([rust, "one"], dense)
-    yield "idim Rust, four lanes", ([rust, "lanes"], dense)
+    yield "idim Rust, widest lanes", ([rust, "lanes"], dense)
+    yield "idim Rust, chunk of signals", ([rust, "batch"], dense)
 
 
 def race(robot, arguments):

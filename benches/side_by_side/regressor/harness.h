@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <time.h>
 
-#define SAMPLES 256
+#define SAMPLES 264
 #define PASSES 20
 #define TIMINGS 20
 

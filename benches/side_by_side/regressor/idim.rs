@@ -12,7 +12,7 @@ use idim_runtime::lane::{Arch, Simd, Vector, WithSimd};
 use idim_runtime::model::{IdentificationModel, Output, States};
 use robot::{JOINTS, Model, PARAMETERS, State, explicit};
 
-const SAMPLES: usize = 256;
+const SAMPLES: usize = 264;
 const PASSES: usize = 20;
 const TIMINGS: usize = 20;
 
@@ -33,8 +33,8 @@ fn main() {
         }
         "lanes" => {
             let series = series(&samples);
-            Arch::new().dispatch(Lanes(&series, |d| results.extend(d)));
-            fastest(|| Arch::new().dispatch(Lanes(&series, |_| ())))
+            Arch::new().dispatch(Lanes { series: &series, kept: Some(&mut results) });
+            fastest(|| Arch::new().dispatch(Lanes { series: &series, kept: None }))
         }
         _ => {
             let series = series(&samples);
@@ -61,20 +61,22 @@ fn one(samples: &[Sample], d: &mut [[f64; PARAMETERS]; JOINTS], mut each: impl F
     }
 }
 
-/// D of all samples, as many at a time as the vectors of the machine hold; hands on what it is of
-/// each sample.
-struct Lanes<'a, F>(&'a [Vec<f64>; 3], F);
+/// D of all samples, as many at a time as the vectors of the machine hold; keeps, where asked to,
+/// what it is of each sample.
+struct Lanes<'a> {
+    series: &'a [Vec<f64>; 3],
+    kept: Option<&'a mut Vec<f64>>,
+}
 
-impl<F: FnMut(Vec<f64>)> WithSimd for Lanes<'_, F> {
+impl WithSimd for Lanes<'_> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(mut self, simd: S) {
-        let keeps = size_of::<F>() > 0;
         let mut d = [[Vector::splat(simd, 0.0); PARAMETERS]; JOINTS];
         for i in (0..SAMPLES).step_by(S::F64_LANES) {
             let mut state = [[d[0][0]; JOINTS]; 3];
-            for (state, series) in state.iter_mut().zip(self.0) {
+            for (state, series) in state.iter_mut().zip(self.series) {
                 for (joint, lanes) in state.iter_mut().enumerate() {
                     *lanes = Vector::from_slice(simd, &series[joint * SAMPLES + i..]);
                 }
@@ -82,8 +84,9 @@ impl<F: FnMut(Vec<f64>)> WithSimd for Lanes<'_, F> {
             let [q, qd, qdd] = state;
             explicit(&State::new(q, qd, qdd), &mut d);
             let d = black_box(&mut d);
-            for lane in (0..S::F64_LANES).filter(|_| keeps) {
-                self.1(d.iter().flatten().map(|x| x.values()[lane]).collect());
+            let Some(kept) = &mut self.kept else { continue };
+            for lane in 0..S::F64_LANES {
+                kept.extend(d.iter().flatten().map(|x| x.values()[lane]));
             }
         }
     }

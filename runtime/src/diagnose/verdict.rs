@@ -35,9 +35,10 @@ const AROUND_REST: usize = 3;
 /// Share of the lack of fit that naming must close, if what is left is significant.
 const CLOSED: f64 = 0.9;
 
-/// What naming may leave of a joint's excess, however much it closes: so many times the variance of
-/// the noise that is left in what repeats.
+/// What that may leave of a joint's excess, in variances of the noise; where more is left, because
+/// there was far more, naming must close this share.
 const LEFT: f64 = 10.0;
+const CLOSED_MOST: f64 = 0.97;
 
 /// Share of what is not explained that a variable must explain to be mentioned.
 const MENTIONED: f64 = 0.15;
@@ -143,11 +144,14 @@ fn is_open(lack: &Lack) -> bool {
 }
 
 /// Whether effects explain what was open: nothing significant is left, or at least nine tenths of
-/// every significant excess are closed and what is left is of the noise's size.
+/// every significant excess are closed, or more where what is left is not of the noise's size.
 pub(super) fn closed(before: &[Lack], after: &[Lack]) -> bool {
     let excess = |lacks: &[Lack]| lacks.iter().map(|lack| lack.excess.max(0.0)).sum::<f64>();
-    let little = after.iter().all(|lack| lack.excess <= LEFT);
-    !open(after) || (little && excess(after) <= (1.0 - CLOSED) * excess(before))
+    let share = match after.iter().all(|lack| lack.excess <= LEFT) {
+        true => CLOSED,
+        false => CLOSED_MOST,
+    };
+    !open(after) || excess(after) <= (1.0 - share) * excess(before)
 }
 
 /// The joints whose gap is open, the share of the residual that is no noise (percent), and the

@@ -187,8 +187,10 @@ fn written(body: &Body, name: &str, types: &[(&str, TokenStream)]) -> Result<Cod
             let name = format_ident!("parameters");
             arguments.push((name, quote! { &[T; PARAMETERS] }, quote! { parameters }));
         }
-        let live = format_ident!("live");
-        arguments.push((live, quote! { &mut [T; #length] }, quote! { &mut live }));
+        if names(&statements, "live") {
+            let live = format_ident!("live");
+            arguments.push((live, quote! { &mut [T; #length] }, quote! { &mut live }));
+        }
         for (argument, array) in stored {
             let name = format_ident!("{argument}");
             arguments.push((name.clone(), quote! { &mut #array }, quote! { &mut *#name }));
