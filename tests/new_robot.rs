@@ -76,6 +76,15 @@ fn urdf_dropped_into_robots_becomes_a_built_in_robot() {
     let manifest = std::fs::read_to_string(project.join("Cargo.toml")).unwrap();
     let manifest = manifest.replace("name = \"idim\"\npath = \"src/main.rs\"", COPY);
     assert!(manifest.contains(COPY));
+    // And another version, as good as its own: a package of the same name, version and place in its workspace would
+    // replace that of the program under test.
+    let own = format!("\nversion = \"{}\"", env!("CARGO_PKG_VERSION"));
+    assert_eq!(manifest.matches(&own).count(), 1);
+    let [major, minor] = [
+        env!("CARGO_PKG_VERSION_MAJOR"),
+        env!("CARGO_PKG_VERSION_MINOR"),
+    ];
+    let manifest = manifest.replace(&own, &format!("\nversion = \"{major}.{minor}.999\""));
     std::fs::write(folder.path().join("Cargo.toml"), manifest).unwrap();
     std::fs::write(folder.path().join("robots/lab_arm.urdf"), URDF).unwrap();
 
