@@ -34,8 +34,6 @@ pub struct Body {
 pub struct Part {
     /// The inputs that it reads, ascending.
     pub inputs: Vec<Input>,
-    /// Whether it reads inputs, sines or cosines.
-    pub reads_state: bool,
     /// The sines and cosines that it is the first to need.
     pub trig: Vec<Trig>,
     /// Loads, constants, values and stores.

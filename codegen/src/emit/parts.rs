@@ -175,13 +175,8 @@ fn part(
         lines.extend(statement.defines.and_then(|node| keep(node, writer)));
     }
     let trig = trig(graph, &own);
-    let is_input = |node: &usize| match graph.nodes()[*node] {
-        Node::Input(input) => !matches!(input, Input::Parameter(_)),
-        _ => false,
-    };
     Part {
         inputs: inputs(graph, &read, &trig),
-        reads_state: read.iter().any(|node| is_input(node) || is_trig(node)),
         trig,
         lines,
     }

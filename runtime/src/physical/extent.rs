@@ -5,9 +5,10 @@
 //! \\[ \int \left( 1 - (x - c)^T A (x - c) \right) dm = \mathrm{tr}(P Q) \ge 0, \qquad
 //!    Q = \begin{pmatrix} -A & A c \\ c^T A & 1 - c^T A c \end{pmatrix} \\]
 //!
-//! and for an ellipsoid every P > 0 that does has a density inside of it (Wensing, Kim, Slotine 2018). A box is inside of three slabs, each an ellipsoid without end in two
-//! directions; their mean is the condition of the smallest ellipsoid around the box, so that they
-//! say more. A cylinder is inside of a slab and of an ellipsoid without end along its axis.
+//! and for an ellipsoid every P > 0 that does has a density inside of it (Wensing, Kim, Slotine
+//! 2018). A box is inside of three slabs, each an ellipsoid without end in two directions; their
+//! mean is the condition of the smallest ellipsoid around the box, so that they say more. A cylinder
+//! is inside of a slab and of an ellipsoid without end along its axis.
 
 use super::pseudo::{Pseudo, Square};
 

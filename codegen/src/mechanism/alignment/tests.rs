@@ -118,6 +118,7 @@ fn urdf(own: &Mechanism, base: &Pose, elsewhere: &[Elsewhere]) -> String {
 fn frames_put_elsewhere_are_found() {
     let own = mechanism("arm.toml", ARM);
     let mut generator = Pcg64Mcg::new(3);
+    let mut tried = 0;
     for case in 0..40 {
         let elsewhere = drawn(&mut generator, own.joints.len());
         let other = mechanism("o.urdf", &urdf(&own, &Pose::identity(), &elsewhere));
@@ -128,7 +129,9 @@ fn frames_put_elsewhere_are_found() {
         let found = align(&own, &other).unwrap();
         assert!(found.apart < 1e-9, "case {case}: {}", found.apart);
         assert_eq!(found.base, Pose::identity());
+        tried += 1;
     }
+    assert!(tried > 20, "{tried}");
 }
 
 #[test]
@@ -181,4 +184,32 @@ fn other_robots_are_told_by_the_joint_where_they_part() {
         }
         other => panic!("{other:?}"),
     }
+}
+
+#[test]
+fn other_trees_are_told_by_their_first_other_joint() {
+    let own = mechanism("arm.toml", ARM);
+    let flange = ARM.rfind("[[joint]]").unwrap();
+    let shorter = align(&own, &mechanism("arm.toml", &ARM[..flange]));
+    assert_eq!(shorter, Err(AlignError::Count { own: 7, other: 6 }));
+    let sliding = ARM
+        .replacen("revolute", "prismatic", 3)
+        .replacen("prismatic", "revolute", 2);
+    let other = align(&own, &mechanism("arm.toml", &sliding));
+    let expected = AlignError::Kind {
+        number: 3,
+        name: "elbow".into(),
+        own: "revolute",
+        other: "prismatic",
+    };
+    assert_eq!(other, Err(expected));
+    let branched = ARM.replace("name = \"bend\"", "name = \"bend\"\nant = 4");
+    let other = align(&own, &mechanism("arm.toml", &branched));
+    let expected = AlignError::Carrier {
+        number: 6,
+        name: "bend".into(),
+        own: "joint 5 (`roll`)".into(),
+        other: "joint 4 (`reach`)".into(),
+    };
+    assert_eq!(other, Err(expected));
 }
