@@ -48,7 +48,12 @@ pub(super) fn square(factor: &Factor, x: &[f64]) -> f64 {
 
 /// Residuals left, and how many rows are left for them.
 pub(super) fn variance(factor: &Factor) -> (f64, f64) {
-    let freedom = (factor.rows - rank(factor)).max(1.0);
+    variance_of(factor, rank(factor))
+}
+
+/// The same where the rank is known.
+pub(super) fn variance_of(factor: &Factor, rank: f64) -> (f64, f64) {
+    let freedom = (factor.rows - rank).max(1.0);
     (rest(factor) / freedom, freedom)
 }
 

@@ -13,6 +13,7 @@
 mod change;
 mod colour;
 mod options;
+mod spread;
 mod watched;
 
 pub use options::WatchOptions;

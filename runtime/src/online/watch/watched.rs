@@ -3,6 +3,7 @@
 use super::super::factor::Factor;
 use super::change;
 use super::colour::{Colour, Past};
+use super::spread::{Comparison, Spread};
 use super::{Deviation, Health, WatchOptions};
 use crate::diagnose::noise::Noise;
 use crate::online::Equation;
@@ -13,13 +14,6 @@ struct Block {
     factor: Factor,
     /// The sample at which it began.
     since: u64,
-}
-
-/// How much more blocks of a healthy robot differ than independent errors would make them.
-#[derive(Clone, Copy, Debug)]
-struct Spread {
-    parameters: f64,
-    rest: f64,
 }
 
 #[derive(Clone, Debug)]
@@ -42,12 +36,12 @@ pub(super) struct Watched {
     newest: usize,
     filled: usize,
     reference: Factor,
+    /// Under way once the reference is whole.
+    comparison: Comparison,
+    comparing: bool,
     spread: Option<Spread>,
-    solved: Vec<f64>,
     new: Factor,
     both: Factor,
-    /// Standard deviations between what was learned and what was stored.
-    from_stored: f64,
 }
 
 impl Watched {
@@ -72,13 +66,13 @@ impl Watched {
             newest: 0,
             filled: 0,
             reference: block.factor.clone(),
+            comparison: Comparison::new(width, o.reference),
+            comparing: false,
             spread: None,
-            solved: vec![0.0; stored.len()],
             new: block.factor.clone(),
             both: block.factor.clone(),
             block,
             stored,
-            from_stored: 0.0,
         }
     }
 
@@ -123,8 +117,12 @@ impl Watched {
             return;
         };
         self.block.factor.add(&self.places, w, *residual, 1.0);
-        if self.spread.is_none() {
-            self.reference.add(&self.places, w, *residual, 1.0);
+        match self.comparing {
+            true => self.compare(),
+            false if self.spread.is_none() => {
+                self.reference.add(&self.places, w, *residual, 1.0);
+            }
+            false => {}
         }
         if self.block.factor.rows >= self.rows as f64 {
             self.finish_block();
@@ -138,34 +136,28 @@ impl Watched {
         self.block.factor.clear();
         self.filled = (self.filled + 1).min(places);
         if self.spread.is_none() && self.filled == self.reference_blocks {
-            self.spread = Some(self.compare_blocks());
+            self.comparison.begin(&self.reference);
+            self.comparing = true;
             self.filled = 0;
         }
     }
 
-    /// The blocks of the reference against its own parameters.
-    fn compare_blocks(&mut self) -> Spread {
-        change::solve(&self.reference, &mut self.solved);
-        let (level, freedom) = change::variance(&self.reference);
-        let count = self.reference_blocks as f64;
-        let (mut far, mut apart) = (0.0, 0.0);
-        for age in 0..self.reference_blocks {
-            let factor = &self.ring[self.place(age)].factor;
-            let more = change::square(factor, &self.solved) - change::rest(factor);
-            far += more / change::rank(factor).max(1.0) / level / count;
-            let (own, few) = change::variance(factor);
-            apart += (own / level - 1.0).powi(2) * few / 2.0 / count;
+    /// Compares the next blocks of the reference: as few with each row as are done before the ring
+    /// turns.
+    fn compare(&mut self) {
+        for _ in 0..(self.reference_blocks + 1).div_ceil(self.rows.max(1)) {
+            match self.comparison.next() {
+                Some(age) => {
+                    let place = self.place(age);
+                    self.comparison.take(&self.ring[place].factor);
+                }
+                None => {
+                    self.spread = Some(self.comparison.spread(&self.reference));
+                    self.comparing = false;
+                    return;
+                }
+            }
         }
-        // Parameters fitted to all blocks lie nearer to each by this share.
-        let share = 1.0 - 1.0 / count;
-        let spread = Spread {
-            parameters: (far / share).max(1.0),
-            rest: (apart / share).max(1.0),
-        };
-        let rank = change::rank(&self.reference).max(1.0);
-        let f = change::gain(&self.reference) / rank / level / spread.parameters;
-        self.from_stored = change::normal(f, rank, freedom);
-        spread
     }
 
     /// Place in the ring of the block `age` blocks before the newest.
@@ -179,7 +171,7 @@ impl Watched {
             return;
         };
         health.learned = true;
-        health.from_stored = self.from_stored;
+        health.from_stored = spread.from_stored;
         (health.parameters, health.residuals) = (0.0, 0.0);
         health.largest = None;
         self.new.clear();
