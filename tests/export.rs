@@ -13,6 +13,8 @@ mod boxes;
 mod frames;
 #[path = "export/friction.rs"]
 mod friction;
+#[path = "export/stated.rs"]
+mod stated;
 
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};

@@ -1,4 +1,5 @@
-//! How far the mass of links can reach, from the shapes that a URDF gives them.
+//! How far the mass of links can reach, from the boxes that the description states and the shapes
+//! that a URDF gives them.
 
 use idim_codegen::describe::shapes::{LinkShapes, Solid, SolidKind, shapes};
 use idim_codegen::mechanism::{Joint, Mechanism, Pose};
@@ -6,26 +7,38 @@ use idim_runtime::physical::{Bound, Extent, Shape};
 use nalgebra::Vector3;
 
 use super::ExportError;
+use super::stated::Stated;
 
-/// What the mass of each link is inside of, in the link's frame; links with shapes that are not
-/// read go among the warnings.
+/// What the mass of each link is inside of, in the link's frame: the described robot and the one of
+/// the URDF, in the same frames, with the URDF's shapes if asked for. A box of the description comes
+/// before them. Links with shapes that are not read go among the warnings.
 ///
 /// # Errors
 /// [`ExportError::Shapes`], [`ExportError::NoShapes`].
 pub(super) fn of(
-    mechanism: &Mechanism,
+    [own, carrier]: [&Mechanism; 2],
+    stated: &Stated<'_>,
     urdf: Option<&str>,
     warnings: &mut Vec<String>,
 ) -> Result<Vec<Bound>, ExportError> {
-    let known = urdf.map(shapes).transpose()?.unwrap_or_default();
+    let single = stated.shapes();
+    let mut known = single.clone();
+    known.extend(urdf.map(shapes).transpose()?.unwrap_or_default());
     let mut bounds = Vec::new();
-    for (link, joint) in mechanism.joints.iter().enumerate() {
-        match extent(joint, &known) {
+    for (link, (own, joint)) in own.joints.iter().zip(&carrier.joints).enumerate() {
+        let whole = stated.whole(own, link).map(|(pose, solid)| {
+            let placed = pose.then(&Pose::from_rpy(&solid.pose));
+            one(&placed, &solid)
+        });
+        let found = whole.or_else(|| extent(own, &single));
+        match found.or_else(|| extent(joint, &known)) {
             Some(extent) => bounds.push(Bound {
                 what: format!("what moves with `{}`", joint.name),
                 link,
                 extent,
             }),
+            // Without --boxes, nobody asked for those of the other links.
+            None if urdf.is_none() => {}
             None => warnings.push(format!(
                 "What moves with `{}` has no box, cylinder or sphere, or meshes beside, which are not \
                  read: its mass may be anywhere.",
@@ -44,9 +57,15 @@ pub(super) fn of(
 fn extent(joint: &Joint, known: &[LinkShapes]) -> Option<Extent> {
     let mut solids: Vec<(Pose, Solid)> = Vec::new();
     for body in &joint.bodies {
-        let shapes = known.iter().find(|shapes| shapes.link == body.name)?;
         let heavy = body.inertial.is_some_and(|inertial| inertial.mass > 0.0);
         let alone = joint.bodies.len() == 1;
+        let Some(shapes) = known.iter().find(|shapes| shapes.link == body.name) else {
+            // A frame without mass needs no shape, if it is known for one.
+            match heavy || joint.carried().mass <= 0.0 {
+                true => return None,
+                false => continue,
+            }
+        };
         if shapes.meshes || ((heavy || alone) && shapes.solids.is_empty()) {
             return None;
         }
@@ -131,7 +150,9 @@ mod tests {
     #[test]
     fn box_around_bodies_that_move_together() {
         let robot = read_texts(&[("arm.urdf", ARM)]).unwrap();
-        let bounds = of(&robot.mechanism, Some(ARM), &mut Vec::new()).unwrap();
+        let stated = Stated::of(&robot).unwrap();
+        let mechanisms = [&robot.mechanism; 2];
+        let bounds = of(mechanisms, &stated, Some(ARM), &mut Vec::new()).unwrap();
         let [bound] = &bounds[..] else {
             panic!("{bounds:?}");
         };
@@ -153,7 +174,8 @@ mod tests {
         );
         let robot = read_texts(&[("arm.urdf", mesh.as_str())]).unwrap();
         let mut warnings = Vec::new();
-        let none = of(&robot.mechanism, Some(&mesh), &mut warnings);
+        let stated = Stated::of(&robot).unwrap();
+        let none = of([&robot.mechanism; 2], &stated, Some(&mesh), &mut warnings);
         assert!(matches!(none, Err(ExportError::NoShapes)));
         assert!(warnings[0].contains("`j`"));
     }

@@ -10,7 +10,11 @@ mod frames;
 mod friction;
 mod metric;
 mod share;
+mod stated;
+mod turned;
 mod unknowns;
+
+pub use idim_codegen::describe::MirrorPlane as Plane;
 
 use idim_codegen::Robot;
 use idim_codegen::builder::{self, BuildError};
@@ -21,6 +25,8 @@ use idim_codegen::mechanism::alignment::{AlignError, Alignment};
 use idim_runtime::physical::{Bodies, PhysicalError};
 
 use frames::Carrier;
+use stated::Stated;
+use turned::Turned;
 
 /// Values read again differ by no more than this share of their body's size.
 const SAME_VALUE: f64 = 1e-9;
@@ -34,12 +40,14 @@ pub struct Identified {
     pub precision: Vec<f64>,
 }
 
-/// What is known beside the log, and how much the description counts.
+/// What is known beside the log and the description's own `total_mass` and `[[link]]`, and how much
+/// the description counts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Options {
-    /// Mass of all that moves, kg.
+    /// Mass of all that moves, kg; comes before the description's.
     pub total_mass: Option<f64>,
-    /// Masses of what moves with a joint, by the name of the joint or of one of its links, kg.
+    /// Masses of what moves with a joint, by the name of the joint or of one of its links, kg;
+    /// come before the description's.
     pub masses: Vec<(String, f64)>,
     /// How much the described bodies count where they and the data differ
     /// ([`idim_runtime::physical::Problem::weight`]).
@@ -52,30 +60,8 @@ pub struct Options {
     /// Whether the mass of links is inside of the shapes that the URDF gives them.
     pub boxes: bool,
     /// Links that are symmetric about a plane of their identified frame, by the name of the joint
-    /// or of one of its links.
+    /// or of one of its links; come before the description's.
     pub symmetric: Vec<(String, Plane)>,
-}
-
-/// A plane through the origin of a link's frame.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Plane {
-    /// That of x and y.
-    Xy,
-    /// That of x and z.
-    Xz,
-    /// That of y and z.
-    Yz,
-}
-
-impl Plane {
-    /// The axis square to it, 0 to 2.
-    fn normal(self) -> usize {
-        match self {
-            Plane::Yz => 0,
-            Plane::Xz => 1,
-            Plane::Xy => 2,
-        }
-    }
 }
 
 impl Default for Options {
@@ -154,6 +140,12 @@ pub enum ExportError {
     /// What was written does not say what it should.
     #[error("the written URDF reads back differently at link {0}: please report this")]
     Defect(usize),
+    /// Planes of symmetry in two frames of one body.
+    #[error(
+        "the planes that what moves with `{0}` is symmetric about are stated in two frames; state \
+         them in one [[link]] alone"
+    )]
+    Planes(String),
     /// A shape that is none.
     #[error(transparent)]
     Shapes(#[from] ShapeError),
@@ -161,7 +153,7 @@ pub enum ExportError {
     #[error(
         "no moving link has a shape that is read: --boxes takes <box>, <cylinder> and <sphere> of \
          <collision> or <visual> in the file of --urdf, and no meshes; give the links such shapes, or \
-         leave it out"
+         leave it out; or state a box in [[link]] of the description"
     )]
     NoShapes,
     /// No friction to write.
@@ -184,14 +176,20 @@ pub fn export(
     options: &Options,
 ) -> Result<Exported, ExportError> {
     let carrier = Carrier::of(robot, urdf)?;
-    let mut unknowns = unknowns::Unknowns::of(robot, &carrier.mechanism, options)?;
+    let stated = Stated::of(robot)?;
+    let mut unknowns = unknowns::Unknowns::of(robot, &carrier.mechanism, &stated, options)?;
     let mut warnings = carrier.warnings();
     warnings.append(&mut unknowns.warnings);
     let mut problem = unknowns.problem(robot, identified, options)?;
-    if options.boxes {
-        problem.bounds = boxes::of(&carrier.mechanism, urdf, &mut warnings)?;
+    let shapes = urdf.filter(|_| options.boxes);
+    if options.boxes || stated.has_boxes() {
+        let joints = [&robot.mechanism, &carrier.mechanism];
+        problem.bounds = boxes::of(joints, &stated, shapes, &mut warnings)?;
     }
-    let bodies = problem.solve()?;
+    let planes = stated.planes(&robot.mechanism.joints, &unknowns.planes)?;
+    let (turned, mirrors) = Turned::of(problem.links.len(), &planes);
+    problem.mirrors = mirrors;
+    let bodies = turned.back(turned.problem(problem).solve()?);
     let names: Vec<String> = unknowns.scalars.into_iter().map(|s| s.name).collect();
     let friction = match options.friction {
         true => friction::of(&carrier.mechanism, &names, &bodies.scalars, &mut warnings)?,

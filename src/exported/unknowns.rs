@@ -3,8 +3,9 @@
 use idim_codegen::Robot;
 use idim_codegen::knowledge;
 use idim_codegen::mechanism::{Joint, Mechanism};
-use idim_runtime::physical::{Known, Mirror, Prior, Problem, Pseudo, Scalar};
+use idim_runtime::physical::{Known, Prior, Problem, Pseudo, Scalar};
 
+use super::stated::Stated;
 use super::{ExportError, Identified, Options, Plane};
 
 /// Standard deviation of a mass that is stated, as a share of it.
@@ -31,7 +32,8 @@ pub(super) struct Unknowns {
     links: Vec<Prior>,
     pub scalars: Vec<Named>,
     known: Vec<Known>,
-    mirrors: Vec<Mirror>,
+    /// Links and normals of planes of symmetry that the options state.
+    pub planes: Vec<(usize, usize)>,
     pub warnings: Vec<String>,
 }
 
@@ -40,14 +42,15 @@ impl Unknowns {
     pub fn of(
         robot: &Robot,
         carrier: &Mechanism,
+        stated: &Stated<'_>,
         options: &Options,
     ) -> Result<Unknowns, ExportError> {
         let mut warnings = Vec::new();
         let links = links(carrier, options.fill, &mut warnings)?;
         Ok(Unknowns {
             scalars: scalars(robot),
-            known: known(carrier, options)?,
-            mirrors: mirrors(carrier, options)?,
+            known: known(carrier, stated, options)?,
+            planes: planes(carrier, options)?,
             links,
             warnings,
         })
@@ -92,7 +95,7 @@ impl Unknowns {
             precision: identified.precision.clone(),
             known: self.known.clone(),
             bounds: Vec::new(),
-            mirrors: self.mirrors.clone(),
+            mirrors: Vec::new(),
             weight: options.weight,
         })
     }
@@ -197,45 +200,50 @@ fn guess(mechanism: &Mechanism, link: usize) -> Pseudo {
     Pseudo::ball(SLENDER * length, ROUND * length, to.map(|x| 0.5 * x))
 }
 
-/// Masses that are stated.
-fn known(mechanism: &Mechanism, options: &Options) -> Result<Vec<Known>, ExportError> {
+/// Masses that are stated; those of the options come before those of the description.
+fn known(
+    mechanism: &Mechanism,
+    stated: &Stated<'_>,
+    options: &Options,
+) -> Result<Vec<Known>, ExportError> {
     let mass = |link: usize| 10 * link + 9;
-    let stated = |what: String, factors: Vec<(usize, f64)>, value: f64| Known {
+    let known = |what: String, factors: Vec<(usize, f64)>, value: f64| Known {
         what,
         factors,
         sigma: STATED * value.abs(),
         value,
     };
-    let mut known = Vec::new();
-    if let Some(total) = options.total_mass {
-        let all = (0..mechanism.joints.len()).map(|link| (mass(link), 1.0));
-        known.push(stated(
+    let mut all = Vec::new();
+    if let Some(total) = options.total_mass.or(stated.total_mass) {
+        let links = (0..mechanism.joints.len()).map(|link| (mass(link), 1.0));
+        all.push(known(
             "mass of all that moves".into(),
-            all.collect(),
+            links.collect(),
             total,
         ));
     }
+    let mut single: Vec<(usize, &str, f64)> = Vec::new();
     for (name, value) in &options.masses {
-        let link = link(mechanism, name)?;
-        known.push(stated(
-            format!("mass of `{name}`"),
-            vec![(mass(link), 1.0)],
-            *value,
-        ));
+        single.push((link(mechanism, name)?, name, *value));
     }
-    Ok(known)
+    let options = single.len();
+    for one in stated.masses() {
+        if single[..options].iter().all(|before| before.0 != one.0) {
+            single.push(one);
+        }
+    }
+    let single = single.into_iter();
+    all.extend(single.map(|(link, name, value)| {
+        known(format!("mass of `{name}`"), vec![(mass(link), 1.0)], value)
+    }));
+    Ok(all)
 }
 
-/// Planes that links are symmetric about.
-fn mirrors(mechanism: &Mechanism, options: &Options) -> Result<Vec<Mirror>, ExportError> {
+/// Planes that links are symmetric about, by link and normal.
+fn planes(mechanism: &Mechanism, options: &Options) -> Result<Vec<(usize, usize)>, ExportError> {
     let planes = options.symmetric.iter();
-    let mirror = |(name, plane): &(String, Plane)| {
-        Ok(Mirror {
-            link: link(mechanism, name)?,
-            normal: plane.normal(),
-        })
-    };
-    planes.map(mirror).collect()
+    let plane = |(name, plane): &(String, Plane)| Ok((link(mechanism, name)?, plane.normal()));
+    planes.map(plane).collect()
 }
 
 /// The link that a joint or one of its bodies names.

@@ -108,6 +108,8 @@ pub const JOINT_COUNT: &str = "IDIM064";
 pub const COUPLING_SINGULAR: &str = "IDIM065";
 /// A `[scaled]` entry that is not a factor times a parameter.
 pub const SCALED: &str = "IDIM066";
+/// A `[[link]]` for what does not exist or does not move.
+pub const LINK_STATED: &str = "IDIM067";
 
 /// What is neither `key = value` nor `key = {values}`.
 pub const PAR_SYNTAX: &str = "IDIM070";

@@ -34,6 +34,10 @@ pub struct Description {
     pub parameters: Vec<(String, f64)>,
     /// Tolerances of the described values, if stated.
     pub prior: Option<PriorSpec>,
+    /// Mass of all that moves, kg, if stated.
+    pub total_mass: Option<f64>,
+    /// What is known of bodies beside any log, in the order of the text.
+    pub links: Vec<LinkSpec>,
     /// What was noticed on the way, none of it an error.
     pub warnings: Vec<Diagnostic>,
     /// Angles that were meant to be multiples of pi/2 and are taken as such.
@@ -350,4 +354,42 @@ pub struct PriorSpec {
     pub rotor_inertia: f64,
     /// Fraction of FV, FS.
     pub friction: f64,
+}
+
+/// A `[[link]]`: what is known of a body beside any log.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LinkSpec {
+    /// A joint, for all that moves with it, or a link of a URDF. What follows is in the frame of
+    /// that link, or of the joint's row; of a URDF's joint, in that of its child link.
+    pub name: String,
+    /// Mass of what moves with the joint, kg.
+    pub mass: Option<f64>,
+    /// Lowest and highest corner of a box around the mass, m.
+    pub corners: Option<[[f64; 3]; 2]>,
+    /// Planes that what moves with the joint is symmetric about.
+    pub symmetric: Vec<MirrorPlane>,
+    /// Where it is stated.
+    pub span: Span,
+}
+
+/// A plane through the origin of a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MirrorPlane {
+    /// That of x and y.
+    Xy,
+    /// That of x and z.
+    Xz,
+    /// That of y and z.
+    Yz,
+}
+
+impl MirrorPlane {
+    /// The axis square to it, 0 to 2.
+    pub fn normal(self) -> usize {
+        match self {
+            MirrorPlane::Yz => 0,
+            MirrorPlane::Xz => 1,
+            MirrorPlane::Xy => 2,
+        }
+    }
 }

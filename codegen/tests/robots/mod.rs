@@ -91,6 +91,8 @@ pub fn description(
         drives: Default::default(),
         parameters: vec![],
         prior: None,
+        total_mass: None,
+        links: vec![],
         warnings: vec![],
         snaps: vec![],
     }

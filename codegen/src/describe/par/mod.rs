@@ -64,6 +64,8 @@ pub(super) fn read(text: &str, file: &str) -> Result<Description, Vec<Diagnostic
         drives: DrivesSpec::default(),
         parameters,
         prior: None,
+        total_mass: None,
+        links: Vec::new(),
         warnings,
         snaps,
     })

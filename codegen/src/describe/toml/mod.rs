@@ -6,6 +6,7 @@
 mod effects;
 mod frame;
 mod joint;
+mod links;
 mod loops;
 mod named;
 mod options;
@@ -126,7 +127,7 @@ fn describe(
     if !joints.is_empty() || to.errors() == 0 {
         check::something_moves(&joints, &mut to);
     }
-    let rest = Rest::read(&mut table, &joints, &frame.extras, &lengths, &mut to);
+    let rest = Rest::read(&mut table, &joints, &frame, &lengths, &mut to);
     table.finish(&mut to);
     let mut warnings = to.decide()?;
     warnings.extend(frame.warnings.iter().cloned());
@@ -159,6 +160,8 @@ fn assemble(
         drives: rest.drives,
         parameters: rest.parameters,
         prior: rest.prior,
+        total_mass: rest.total_mass,
+        links: rest.links,
         warnings,
         snaps: frame.snaps,
     }

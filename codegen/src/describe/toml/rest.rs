@@ -2,12 +2,15 @@
 
 use super::super::check::Known;
 use super::super::code;
-use super::super::description::{DrivesSpec, EffectSpec, IdentifySpec, PriorSpec, ScaledParameter};
+use super::super::description::{
+    DrivesSpec, EffectSpec, IdentifySpec, LinkSpec, PriorSpec, ScaledParameter,
+};
 use super::super::diagnostic::Span;
 use super::super::findings::{Findings, finding};
 use super::effects::{self, Wanted};
-use super::frame::of_driven;
+use super::frame::{Frame, of_driven};
 use super::joint::Extras;
+use super::links;
 use super::named;
 use super::options;
 use super::table::Table;
@@ -34,17 +37,20 @@ pub(super) struct Rest {
     pub(super) drives: DrivesSpec,
     pub(super) parameters: Vec<(String, f64)>,
     pub(super) prior: Option<PriorSpec>,
+    pub(super) total_mass: Option<f64>,
+    pub(super) links: Vec<LinkSpec>,
 }
 
 impl Rest {
-    /// Reads the tables; `extras` has one entry per joint.
+    /// Reads the tables.
     pub(super) fn read(
         table: &mut Table<'_>,
         joints: &[Known],
-        extras: &[Extras],
+        frame: &Frame,
         lengths: &[(String, f64)],
         to: &mut Findings,
     ) -> Self {
+        let extras = &frame.extras[..];
         let drives = table
             .get("drives")
             .and_then(|value| options::drives(value, to));
@@ -68,6 +74,8 @@ impl Rest {
             prior: table
                 .get("prior")
                 .and_then(|value| options::prior(value, to)),
+            total_mass: links::total_mass(table, to),
+            links: links::read(table, &frame.geometry, lengths, to),
         }
     }
 }
