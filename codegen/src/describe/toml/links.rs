@@ -107,8 +107,8 @@ fn corners(
         );
         return None;
     };
-    let pairs = AXES.into_iter().zip(lowest.into_iter().zip(highest));
-    for (axis, (low, high)) in pairs.filter(|(_, (low, high))| low >= high) {
+    let mut pairs = AXES.into_iter().zip(lowest.into_iter().zip(highest));
+    if let Some((axis, (low, high))) = pairs.find(|(_, (low, high))| low >= high) {
         let message = format!("{what}: along {axis}, {low} is not below {high}");
         let help = "the lowest corner first, then the highest";
         to.error(
@@ -272,14 +272,11 @@ mod tests {
             let found = errors(text);
             assert!(found.contains(wanted), "{found}\n{wanted}");
         }
-        let heavy = read_text("total_mass = 0\n", "robot.toml", Kind::Toml, &|_| {
-            Err(String::new())
-        });
-        assert!(
-            heavy.unwrap_err()[0]
-                .to_string()
-                .contains("`total_mass` must be positive")
-        );
+        let text = format!("total_mass = 0\n{ROWS}");
+        let massless = read_text(&text, "robot.toml", Kind::Toml, &|_| Err(String::new()));
+        let found = massless.unwrap_err()[0].to_string();
+        let wanted = "robot.toml:1:14: error [IDIM045]: `total_mass` must be positive, not 0";
+        assert!(found.contains(wanted), "{found}");
     }
 
     #[test]
