@@ -8,6 +8,8 @@
 mod assembler;
 mod run;
 
+use std::cell::RefCell;
+
 use idim_lanes::Arch;
 
 use super::graph::{Expr, Function, Graph, Input};
@@ -16,7 +18,12 @@ use assembler::Assembler;
 use run::{Register, Run};
 
 /// States per register: long enough to amortise the dispatch, short enough for the cache.
-pub const WIDTH: usize = 64;
+pub const WIDTH: usize = 128;
+
+thread_local! {
+    /// Registers of the tapes that this thread ran: to clear them anew for each batch would cost.
+    static REGISTERS: RefCell<Vec<Register>> = const { RefCell::new(Vec::new()) };
+}
 
 #[derive(Clone, Copy, Debug)]
 enum Op {
@@ -34,14 +41,37 @@ enum Op {
     /// `c - a * b`, rounded twice.
     SubMul(usize, usize, usize),
     Call(Function, usize),
-    /// Stores `sign * register` as output `index`.
-    Store(usize, usize, f64),
+    /// Stores the target register.
+    Store(Place),
+}
+
+impl Op {
+    /// Whether the values of registers are combined, state by state.
+    fn is_arithmetic(self) -> bool {
+        match self {
+            Op::Add(..) | Op::Sub(..) | Op::Mul(..) => true,
+            Op::MulAdd(..) | Op::MulSub(..) | Op::SubMul(..) => true,
+            Op::Call(function, _) => function == Function::Sign,
+            Op::Constant(_) | Op::Input(_) | Op::SinCos(..) | Op::Store(_) => false,
+        }
+    }
+}
+
+/// Where a value goes to beside its register.
+#[derive(Clone, Copy, Debug)]
+struct Place {
+    output: usize,
+    sign: f64,
+    /// Whether the register is read again.
+    kept: bool,
 }
 
 #[derive(Clone, Copy, Debug)]
 struct Step {
     op: Op,
     target: usize,
+    /// An output that is stored as soon as computed.
+    output: Option<Place>,
 }
 
 /// A compiled set of outputs.
@@ -105,12 +135,15 @@ impl Tape {
     /// The widest vectors of the machine are used; no operation is fused with another, so that all
     /// machines agree to the bit.
     pub fn run(&self, batch: &Batch<'_>, out: &mut [f64]) {
-        let registers = vec![Register::ZERO; self.registers];
-        Arch::new().dispatch(Run {
-            tape: self,
-            batch,
-            registers,
-            out,
+        REGISTERS.with_borrow_mut(|registers| {
+            let count = registers.len().max(self.registers);
+            registers.resize(count, Register::ZERO);
+            Arch::new().dispatch(Run {
+                tape: self,
+                batch,
+                registers,
+                out,
+            });
         });
     }
 }

@@ -77,6 +77,10 @@ impl Samples for Log {
         self.source().doubtful()
     }
 
+    fn ranges(&self) -> Option<&[(f64, f64)]> {
+        self.source().ranges()
+    }
+
     fn warnings(&self) -> &[String] {
         self.source().warnings()
     }

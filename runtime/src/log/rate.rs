@@ -25,11 +25,23 @@ pub(super) fn fits(stamps: &dyn Stamps, rate_hz: f64, given: bool) -> Found<bool
 }
 
 fn fit(stamps: &dyn Stamps, quantum: f64, rate_hz: f64, given: bool) -> Found<bool> {
+    Ok(spread(stamps, rate_hz)? <= spread_allowed(quantum, rate_hz, given))
+}
+
+/// How far apart the deviations of stamps on a grid may be, s.
+fn spread_allowed(quantum: f64, rate_hz: f64, given: bool) -> f64 {
     let step = 1.0 / rate_hz;
-    let mut tolerance = ON_GRID * step;
-    if given || quantum <= 0.5 * step {
-        tolerance = tolerance.max(0.5 * quantum * (1.0 + 1e-6));
+    let tolerance = ON_GRID * step;
+    match given || quantum <= 0.5 * step {
+        true => 2.0 * tolerance.max(0.5 * quantum * (1.0 + 1e-6)),
+        false => 2.0 * tolerance,
     }
+}
+
+/// How far apart the deviations of the stamps from a grid are, s; infinite where a stamp is no
+/// number.
+fn spread(stamps: &dyn Stamps, rate_hz: f64) -> Found<f64> {
+    let step = 1.0 / rate_hz;
     let Ends { first, .. } = stamps.ends();
     let (mut low, mut high, mut k) = (0.0_f64, 0.0_f64, 0.0);
     let mut numbers = true;
@@ -44,7 +56,7 @@ fn fit(stamps: &dyn Stamps, quantum: f64, rate_hz: f64, given: bool) -> Found<bo
         let (lowest, highest) = extent(&deviations);
         (low, high) = (low.min(lowest), high.max(highest));
     })?;
-    Ok(numbers && high - low <= 2.0 * tolerance)
+    Ok(if numbers { high - low } else { f64::INFINITY })
 }
 
 /// Numbers near this one, \( 1.5 \cdot 2^{52} \), are whole.
@@ -105,8 +117,13 @@ fn estimate(stamps: &dyn Stamps) -> Found<(f64, bool)> {
     let Ends { first, last, len } = stamps.ends();
     let mean = (len.saturating_sub(1)) as f64 / (last - first);
     let whole_microseconds = 1e6 / (1e6 / mean).round();
-    let quantum = quantum(stamps)?;
-    for rate in [round_rate(mean), mean.round(), whole_microseconds, mean] {
+    let likeliest = round_rate(mean);
+    let (quantum, first_spread) = rayon::join(|| quantum(stamps), || spread(stamps, likeliest));
+    let (quantum, first_spread) = (quantum?, first_spread?);
+    if likeliest > 0.0 && first_spread <= spread_allowed(quantum, likeliest, false) {
+        return Ok((likeliest, true));
+    }
+    for rate in [mean.round(), whole_microseconds, mean] {
         if rate > 0.0 && fit(stamps, quantum, rate, false)? {
             return Ok((rate, true));
         }

@@ -24,6 +24,11 @@ pub trait Samples: Sync {
     /// Samples that cannot be believed; see [`Recording::doubtful`].
     fn doubtful(&self) -> &[Range<usize>];
 
+    /// Smallest and largest position of each joint, if known without a look at the samples.
+    fn ranges(&self) -> Option<&[(f64, f64)]> {
+        None
+    }
+
     /// What was noticed while reading.
     fn warnings(&self) -> &[String];
 

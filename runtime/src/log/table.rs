@@ -85,7 +85,8 @@ pub(super) fn read_into(
     match source.content {
         Content::Text(text) => {
             let parser = Parser::new(layout, text.separator, source.header.len());
-            read_text(text.lines, &parser, &mut progress, sink)?;
+            // On the threads that parse: another one would have to be woken for every batch.
+            rayon::scope(|_| read_text(text.lines, &parser, &mut progress, sink))?;
         }
         #[cfg(feature = "parquet")]
         Content::Parquet(content) => content.read(layout, |rows| {

@@ -37,7 +37,7 @@ pub(crate) struct Course<'a> {
 }
 
 impl<'a> Course<'a> {
-    /// Looks through a log once: checks it and finds the joints that rest.
+    /// Finds the joints that rest.
     ///
     /// # Errors
     /// Those of [`Motion::trimmed`] and [`check_torque`]; [`ObserveError::Unreadable`].
@@ -198,6 +198,8 @@ impl<'a> Course<'a> {
         let start = range.start.saturating_sub(reach);
         let end = range.end.saturating_add(reach).min(self.source.len());
         let recording = window(self.source, start..end)?;
+        check(&recording, self.model.joints().len())?;
+        check_torque(&recording)?;
         let mut motion = Motion::filtered(&recording, self.filtering)?;
         motion.rest_below(&self.taken, self.filtering);
         motion.hold(&self.resting);
@@ -265,14 +267,18 @@ impl Extent {
     }
 }
 
-/// The joints that never move, and their mean positions; everything is checked on the way.
+/// The joints that never move, and their mean positions.
 fn resting(source: &dyn Samples, joints: usize) -> Result<Vec<(usize, f64)>, ObserveError> {
     let len = source.len();
+    check(&window(source, 0..1)?, joints)?;
+    if let Some(ranges) = source.ranges()
+        && ranges.iter().all(|(low, high)| high - low > REST)
+    {
+        return Ok(Vec::new());
+    }
     let starts: Vec<usize> = (0..len).step_by(WINDOW).collect();
     let parts = starts.into_par_iter().map(|start| {
         let recording = window(source, start..(start + WINDOW).min(len))?;
-        check(&recording, joints)?;
-        check_torque(&recording)?;
         Ok(recording.q.iter().map(|q| Extent::of(q)).collect())
     });
     let parts: Vec<Vec<Extent>> = parts.collect::<Result<_, ObserveError>>()?;

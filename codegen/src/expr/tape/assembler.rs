@@ -1,6 +1,6 @@
 //! From the graph to steps: registers are assigned while walking the order.
 
-use super::{Op, Step};
+use super::{Op, Place, Step};
 use crate::expr::graph::{Expr, Graph, Node};
 use crate::expr::schedule::{operands, uses};
 
@@ -61,11 +61,32 @@ impl<'a> Assembler<'a> {
             Node::Call(function, a) => self.push(index, Op::Call(function, self.at(a))),
         }
         for (output, sign) in std::mem::take(&mut self.stores[index]) {
-            let target = self.place[index];
-            let op = Op::Store(target, output, sign);
-            self.steps.push(Step { op, target });
             self.release(index);
+            self.store(index, output, sign);
         }
+    }
+
+    /// Stores a value as soon as it is computed, in the same step if that can be.
+    fn store(&mut self, index: usize, output: usize, sign: f64) {
+        let target = self.place[index];
+        let kept = self.remaining[index] > 0;
+        let place = Place { output, sign, kept };
+        match self.steps.last_mut() {
+            Some(step)
+                if step.target == target && step.op.is_arithmetic() && step.output.is_none() =>
+            {
+                step.output = Some(place);
+            }
+            _ => self.push_step(Op::Store(place), target),
+        }
+    }
+
+    fn push_step(&mut self, op: Op, target: usize) {
+        self.steps.push(Step {
+            op,
+            target,
+            output: None,
+        });
     }
 
     fn at(&self, expr: Expr) -> usize {
@@ -106,7 +127,7 @@ impl<'a> Assembler<'a> {
             }
         }
         let target = self.register(index);
-        self.steps.push(Step { op, target });
+        self.push_step(op, target);
     }
 
     /// Sine and cosine cost little more than one of them: the other one waits in its register.
@@ -117,7 +138,7 @@ impl<'a> Assembler<'a> {
         let pair = self.pairs[angle];
         let [target, cosine] = pair.map(|index| self.register(index));
         let op = Op::SinCos(angle, cosine);
-        self.steps.push(Step { op, target });
+        self.push_step(op, target);
         let unused = pair.into_iter().filter(|&index| self.remaining[index] == 0);
         self.free.extend(unused.map(|index| self.place[index]));
     }

@@ -1,8 +1,10 @@
 //! A tape at work, on the widest vectors of the machine.
 
+use std::array::from_fn;
+
 use idim_lanes::{Lane, Simd, Vector, WithSimd};
 
-use super::{Batch, Op, Step, Tape, WIDTH};
+use super::{Batch, Op, Place, Step, Tape, WIDTH};
 use crate::expr::graph::{Function, Input};
 
 /// States that one instruction of the widest machines works on.
@@ -17,8 +19,8 @@ impl Register {
     pub(super) const ZERO: Register = Register([[0.0; LANES]; WIDTH / LANES]);
 
     #[inline(always)]
-    fn map(self, f: impl Fn(f64) -> f64) -> Register {
-        Register(self.0.map(|lanes| lanes.map(&f)))
+    fn values(&mut self) -> &mut [f64] {
+        self.0.as_flattened_mut()
     }
 }
 
@@ -26,8 +28,24 @@ impl Register {
 pub(super) struct Run<'a> {
     pub tape: &'a Tape,
     pub batch: &'a Batch<'a>,
-    pub registers: Vec<Register>,
+    /// As many as the tape asks for; what they hold at first does not matter.
+    pub registers: &'a mut [Register],
     pub out: &'a mut [f64],
+}
+
+/// The states of the batch that the registers hold.
+#[derive(Clone, Copy)]
+struct Window {
+    start: usize,
+    width: usize,
+}
+
+impl Window {
+    /// Values in use, those that fill the last group up included.
+    #[inline(always)]
+    fn padded(self) -> usize {
+        self.width.next_multiple_of(LANES)
+    }
 }
 
 impl WithSimd for Run<'_> {
@@ -35,71 +53,75 @@ impl WithSimd for Run<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(mut self, simd: S) {
-        let mut start = 0;
-        while start < self.batch.len {
+        for start in (0..self.batch.len).step_by(WIDTH) {
             let width = WIDTH.min(self.batch.len - start);
             for step in &self.tape.steps {
-                self.step(simd, step, start, width);
+                self.step(simd, step, Window { start, width });
             }
-            start += width;
         }
     }
 }
 
 impl Run<'_> {
     #[inline(always)]
-    fn step<S: Simd>(&mut self, simd: S, step: &Step, start: usize, width: usize) {
+    fn step<S: Simd>(&mut self, simd: S, step: &Step, window: Window) {
         let target = step.target;
         match step.op {
-            Op::Constant(value) => self.registers[target] = Register::ZERO.map(|_| value),
-            Op::Input(input) => self.registers[target] = read(self.batch, input, start, width),
+            Op::Constant(value) => self.values(target, window).fill(value),
+            Op::Input(input) => self.read(input, target, window),
             Op::SinCos(angle, cosine) => {
-                let angle = self.angle(angle, start, width);
-                let (sin, cos) = sin_cos(simd, &angle, width);
-                self.registers[cosine] = cos;
-                self.registers[target] = sin;
+                self.angle(angle, target, window);
+                self.sin_cos(simd, target, [Some(target), Some(cosine)], window.width);
             }
-            Op::Add(a, b) => self.combine(target, [a, b, b], width, |x, y, _| x + y),
-            Op::Sub(a, b) => self.combine(target, [a, b, b], width, |x, y, _| x - y),
-            Op::Mul(a, b) => self.combine(target, [a, b, b], width, |x, y, _| x * y),
-            Op::MulAdd(a, b, c) => self.combine(target, [a, b, c], width, |x, y, z| x * y + z),
-            Op::MulSub(a, b, c) => self.combine(target, [a, b, c], width, |x, y, z| x * y - z),
-            Op::SubMul(a, b, c) => self.combine(target, [a, b, c], width, |x, y, z| z - x * y),
+            Op::Add(a, b) => self.combine(step, [a, b, b], window, |x, y, _| x + y),
+            Op::Sub(a, b) => self.combine(step, [a, b, b], window, |x, y, _| x - y),
+            Op::Mul(a, b) => self.combine(step, [a, b, b], window, |x, y, _| x * y),
+            Op::MulAdd(a, b, c) => self.combine(step, [a, b, c], window, |x, y, z| x * y + z),
+            Op::MulSub(a, b, c) => self.combine(step, [a, b, c], window, |x, y, z| x * y - z),
+            Op::SubMul(a, b, c) => self.combine(step, [a, b, c], window, |x, y, z| z - x * y),
             Op::Call(Function::Sine, a) => {
-                self.registers[target] = sin_cos(simd, &self.registers[a], width).0;
+                self.sin_cos(simd, a, [Some(target), None], window.width);
             }
             Op::Call(Function::Cosine, a) => {
-                self.registers[target] = sin_cos(simd, &self.registers[a], width).1;
+                self.sin_cos(simd, a, [None, Some(target)], window.width);
             }
             Op::Call(Function::Sign, a) => {
-                self.combine(target, [a; 3], width, |x, _, _| sign(x));
+                self.combine(step, [a; 3], window, |x, _, _| sign(x));
             }
             Op::Call(function, a) => {
-                self.registers[target] = self.registers[a].map(|x| call(function, x));
+                self.registers[target] = self.registers[a];
+                let values = &mut self.registers[target].values()[..window.width];
+                values.iter_mut().for_each(|x| *x = call(function, *x));
             }
-            Op::Store(a, output, sign) => {
-                let place = &mut self.out[output * self.batch.len + start..][..width];
-                for (to, from) in place.iter_mut().zip(self.registers[a].0.as_flattened()) {
-                    *to = sign * from;
-                }
-            }
+            Op::Store(place) => self.store(target, place, window),
         }
     }
 
-    /// The values of three registers, state by state, for the first `width` states. The target may
-    /// be one of them.
+    /// The values of a register that are in use.
+    #[inline(always)]
+    fn values(&mut self, register: usize, window: Window) -> &mut [f64] {
+        &mut self.registers[register].values()[..window.padded()]
+    }
+
+    /// The values of three registers, state by state. The target may be one of them.
     #[inline(always)]
     fn combine(
         &mut self,
-        target: usize,
+        step: &Step,
         from: [usize; 3],
-        width: usize,
+        window: Window,
         f: impl Fn(f64, f64, f64) -> f64,
     ) {
         // Whole registers, of a length known beforehand, run without a loop.
-        match width {
-            WIDTH => self.side_by_side(target, from, WIDTH / LANES, f),
-            _ => self.side_by_side(target, from, width.div_ceil(LANES), f),
+        match (window.width, step.output) {
+            (WIDTH, None) => self.side_by_side(step.target, from, WIDTH / LANES, f),
+            (WIDTH, Some(place)) => self.stored(step, from, place, window.start, f),
+            (width, place) => {
+                self.side_by_side(step.target, from, width.div_ceil(LANES), f);
+                if let Some(place) = place {
+                    self.store(step.target, place, window);
+                }
+            }
         }
     }
 
@@ -114,72 +136,115 @@ impl Run<'_> {
         let registers = &mut self.registers[..];
         for k in 0..groups {
             let (x, y, z) = (registers[a].0[k], registers[b].0[k], registers[c].0[k]);
-            let places = registers[target].0[k].iter_mut();
-            for (((place, x), y), z) in places.zip(x).zip(y).zip(z) {
-                *place = f(x, y, z);
+            registers[target].0[k] = from_fn(|i| f(x[i], y[i], z[i]));
+        }
+    }
+
+    /// The same of whole registers into an output, and into the target if it is read again.
+    #[inline(always)]
+    fn stored(
+        &mut self,
+        step: &Step,
+        [a, b, c]: [usize; 3],
+        place: Place,
+        start: usize,
+        f: impl Fn(f64, f64, f64) -> f64,
+    ) {
+        let registers = &mut self.registers[..];
+        let out = &mut self.out[place.output * self.batch.len + start..][..WIDTH];
+        for (k, out) in out.chunks_exact_mut(LANES).enumerate() {
+            let (x, y, z) = (registers[a].0[k], registers[b].0[k], registers[c].0[k]);
+            let values: [f64; LANES] = from_fn(|i| f(x[i], y[i], z[i]));
+            if place.kept {
+                registers[step.target].0[k] = values;
+            }
+            for (out, value) in out.iter_mut().zip(values) {
+                *out = place.sign * value;
             }
         }
     }
 
     #[inline(always)]
-    fn angle(&self, index: usize, start: usize, width: usize) -> Register {
-        let (terms, offset) = &self.tape.angles[index];
-        let mut sum = Register::ZERO;
+    fn store(&mut self, register: usize, place: Place, window: Window) {
+        let out = &mut self.out[place.output * self.batch.len + window.start..][..window.width];
+        for (to, from) in out
+            .iter_mut()
+            .zip(self.registers[register].0.as_flattened())
+        {
+            *to = place.sign * from;
+        }
+    }
+
+    #[inline(always)]
+    fn read(&mut self, input: Input, target: usize, window: Window) {
+        let presliding = !self.batch.slip.is_empty();
+        let batch = self.batch;
+        let values = self.values(target, window);
+        let Some(series) = series(batch, input, window) else {
+            values.fill(0.0);
+            return;
+        };
+        let (held, rest) = values.split_at_mut(series.len());
+        held.copy_from_slice(series);
+        rest.fill(0.0);
+        if matches!(input, Input::Slip(_)) && !presliding {
+            held.iter_mut().for_each(|v| *v = sign(*v));
+        }
+    }
+
+    #[inline(always)]
+    fn angle(&mut self, index: usize, target: usize, window: Window) {
+        let (batch, tape) = (self.batch, self.tape);
+        let (terms, offset) = &tape.angles[index];
+        let sum = self.values(target, window);
+        sum.fill(0.0);
         for (place, &(joint, sign)) in terms.iter().enumerate() {
-            let q = read(self.batch, Input::Q(joint), start, width);
-            for (s, q) in sum.0.as_flattened_mut().iter_mut().zip(q.0.as_flattened()) {
+            let q = series(batch, Input::Q(joint), window).unwrap_or_default();
+            for (s, q) in sum.iter_mut().zip(q) {
                 *s = if place == 0 { sign * q } else { *s + sign * q };
             }
         }
-        match *offset {
-            0.0 => sum,
-            offset => sum.map(|sum| sum + offset),
+        if *offset != 0.0 {
+            sum.iter_mut().for_each(|sum| *sum += offset);
+        }
+    }
+
+    /// Sines and cosines of the first `width` values, into the registers that want them.
+    #[inline(always)]
+    fn sin_cos<S: Simd>(
+        &mut self,
+        simd: S,
+        angle: usize,
+        targets: [Option<usize>; 2],
+        width: usize,
+    ) {
+        let lanes = S::F64_LANES;
+        for start in (0..width).step_by(lanes) {
+            let lanes = start..start + lanes;
+            let angle = &self.registers[angle].values()[lanes.clone()];
+            let (s, c) = Vector::from_slice(simd, angle).sin_cos();
+            for (target, found) in targets.into_iter().zip([s, c]) {
+                if let Some(target) = target {
+                    let place = &mut self.registers[target].values()[lanes.clone()];
+                    place.copy_from_slice(found.values());
+                }
+            }
         }
     }
 }
 
+/// What the batch says of an input; `None` of what it does not hold.
 #[inline(always)]
-fn read(batch: &Batch<'_>, input: Input, start: usize, width: usize) -> Register {
+fn series<'a>(batch: &Batch<'a>, input: Input, window: Window) -> Option<&'a [f64]> {
     let (series, joint) = match input {
         Input::Q(joint) => (batch.q, joint),
         Input::Qd(joint) => (batch.qd, joint),
         Input::Qdd(joint) => (batch.qdd, joint),
-        Input::Slip(joint) if batch.slip.is_empty() => {
-            return read_series(batch, batch.qd, joint, start, width).map(sign);
-        }
+        Input::Slip(joint) if batch.slip.is_empty() => (batch.qd, joint),
         Input::Slip(joint) => (batch.slip, joint),
-        Input::Parameter(_) => return Register::ZERO,
+        Input::Parameter(_) => return None,
     };
-    read_series(batch, series, joint, start, width)
-}
-
-#[inline(always)]
-fn read_series(
-    batch: &Batch<'_>,
-    series: &[f64],
-    joint: usize,
-    start: usize,
-    width: usize,
-) -> Register {
-    let mut register = Register::ZERO;
-    let from = &series[joint * batch.len + start..][..width];
-    register.0.as_flattened_mut()[..width].copy_from_slice(from);
-    register
-}
-
-/// Sines and cosines of the first `width` values.
-#[inline(always)]
-fn sin_cos<S: Simd>(simd: S, angles: &Register, width: usize) -> (Register, Register) {
-    let (mut sin, mut cos) = (*angles, *angles);
-    let lanes = S::F64_LANES;
-    let sines = sin.0.as_flattened_mut().chunks_exact_mut(lanes);
-    let cosines = cos.0.as_flattened_mut().chunks_exact_mut(lanes);
-    for (sin, cos) in sines.zip(cosines).take(width.div_ceil(lanes)) {
-        let (s, c) = Vector::from_slice(simd, sin).sin_cos();
-        sin.copy_from_slice(s.values());
-        cos.copy_from_slice(c.values());
-    }
-    (sin, cos)
+    Some(&series[joint * batch.len + window.start..][..window.width])
 }
 
 #[inline(always)]

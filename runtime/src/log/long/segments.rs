@@ -46,6 +46,11 @@ pub(super) fn settle(
     encoder_resolution: Option<f64>,
     warnings: &mut Vec<String>,
 ) -> Found<Settled> {
+    let whole = rayon::scope(|_| along(rows, layout, robot))?;
+    Ok(whole.report(rows.first_row, robot, encoder_resolution, warnings))
+}
+
+fn along(rows: &Rows, layout: &Layout, robot: Robot<'_>) -> Found<Whole> {
     let starts: Vec<usize> = (0..rows.spool.rows).step_by(SEGMENT).collect();
     let at_once = rayon::current_num_threads().clamp(1, MOST_AT_ONCE);
     let settle = |(&start, room): (&usize, &mut Vec<Vec<f64>>)| {
@@ -70,7 +75,7 @@ pub(super) fn settle(
         }
     }
     replace(&changed, rows, layout)?;
-    Ok(whole.report(rows.first_row, robot, encoder_resolution, warnings))
+    Ok(whole)
 }
 
 fn replace(segments: &[Segment], rows: &Rows, layout: &Layout) -> Found<()> {

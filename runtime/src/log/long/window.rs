@@ -129,6 +129,10 @@ impl Samples for LongLog {
         &self.doubtful
     }
 
+    fn ranges(&self) -> Option<&[(f64, f64)]> {
+        Some(&self.range)
+    }
+
     fn warnings(&self) -> &[String] {
         &self.warnings
     }
