@@ -1,32 +1,59 @@
-//! Condition numbers that the search for exciting motions reaches, beside published ones: the same
-//! robot, parameters, time and number of harmonics, and limits that are those of the published
-//! motion.
-//!
-//! `cargo run --release --example exciting [STARTS [STEPS]]`
+//! Published motions, or ones made by published searches, as tasks with the same limits.
 
-use std::error::Error;
 use std::f64::consts::{FRAC_PI_2, PI};
-use std::time::Instant;
 
-use idim::codegen::builder;
-use idim::interpreted::Interpreter;
-use idim::runtime::excite::{
-    Criterion, Family, JointLimits, Noise, Search, Settings, Start, Task, excite,
-};
-use idim::runtime::model::IdentificationModel;
+use idim::runtime::excite::{Criterion, Family, JointLimits, Noise, Search, Settings, Start};
 
 /// A published motion and its limits.
-struct Case {
-    name: &'static str,
+pub struct Case {
+    /// Robot, family and limits, in words.
+    pub name: &'static str,
     /// File and text of the robot.
-    robot: (&'static str, String),
-    limits: Vec<JointLimits>,
-    center: Option<Vec<f64>>,
-    harmonics: usize,
-    start: Start,
-    period_s: f64,
+    pub robot: (&'static str, String),
+    /// Of each joint.
+    pub limits: Vec<JointLimits>,
+    /// Of the motion; searched if absent.
+    pub center: Option<Vec<f64>>,
+    /// Of the Fourier series.
+    pub harmonics: usize,
+    /// How it begins.
+    pub start: Start,
+    /// s.
+    pub period_s: f64,
     /// Condition number, in words.
-    published: &'static str,
+    pub published: &'static str,
+    /// Condition number of the published motion on idim's columns, if there is one.
+    pub condition: Option<f64>,
+}
+
+impl Case {
+    /// A search for the smallest condition number, within the case's time and harmonics.
+    pub fn settings(&self, starts: usize, steps: usize) -> Settings {
+        Settings {
+            family: Family::Fourier {
+                harmonics: self.harmonics,
+            },
+            start: self.start,
+            criterion: Criterion::Condition,
+            period_s: self.period_s,
+            periods: 1,
+            search: Search {
+                seed: 1,
+                starts,
+                steps,
+            },
+            noise: Noise {
+                sigma: vec![1.0; self.limits.len()],
+                rate_hz: 100.0,
+            },
+            wanted_pct: None,
+        }
+    }
+}
+
+/// All cases.
+pub fn all() -> [Case; 4] {
+    [fixture(), waypoints(), ur10e(), puma()]
 }
 
 /// Universal Robots UR10 without friction: the 36 inertial base parameters.
@@ -62,8 +89,8 @@ kind = "revolute"
 alpha = "-pi/2"
 "#;
 
-const PUMA: &str = include_str!("../robots/puma560.toml");
-const UR10E: &str = include_str!("../robots/ur10e.toml");
+const PUMA: &str = include_str!("../../robots/puma560.toml");
+const UR10E: &str = include_str!("../../robots/ur10e.toml");
 
 fn limits<const N: usize>(
     lower: [f64; N],
@@ -100,6 +127,7 @@ fn fixture() -> Case {
         start: Start::Moving,
         period_s: 10.0,
         published: "77.02 (figaroh-examples, examples/ur10/data/truth/protocol.yaml)",
+        condition: Some(70.0),
     }
 }
 
@@ -127,6 +155,7 @@ fn waypoints() -> Case {
         start: Start::Rest,
         period_s: 24.0,
         published: "61.74 (figaroh-examples, examples/ur10/data/truth/train_waypoints.json)",
+        condition: Some(134.0),
     }
 }
 
@@ -146,6 +175,7 @@ fn ur10e() -> Case {
         start: Start::Rest,
         period_s: 10.0,
         published: "none found for these parameters",
+        condition: None,
     }
 }
 
@@ -167,54 +197,6 @@ fn puma() -> Case {
         start: Start::Rest,
         period_s: 10.0,
         published: "36.6 (BIRDy's search by SLSQP, 40 starts: tests/interop/excitation.py)",
+        condition: Some(36.6),
     }
-}
-
-fn main() -> Result<(), Box<dyn Error>> {
-    let mut arguments = std::env::args().skip(1).map(|text| text.parse::<usize>());
-    let starts = arguments.next().transpose()?.unwrap_or(16);
-    let steps = arguments.next().transpose()?.unwrap_or(400);
-    for case in [fixture(), waypoints(), ur10e(), puma()] {
-        let (file, text) = &case.robot;
-        let model = Interpreter::new(&builder::read_texts(&[(file, text)])?);
-        let task = Task {
-            model: &model,
-            limits: &case.limits,
-            center: case.center.as_deref(),
-            parameters: None,
-        };
-        let settings = Settings {
-            family: Family::Fourier {
-                harmonics: case.harmonics,
-            },
-            start: case.start,
-            criterion: Criterion::Condition,
-            period_s: case.period_s,
-            periods: 1,
-            search: Search {
-                seed: 1,
-                starts,
-                steps,
-            },
-            noise: Noise {
-                sigma: vec![1.0; model.joints().len()],
-                rate_hz: 100.0,
-            },
-            wanted_pct: None,
-        };
-        let clock = Instant::now();
-        let found = excite(&task, &settings, &|| ())?;
-        let chance = found.by_chance;
-        println!("{} ({} columns)", case.name, model.columns().len());
-        println!("  published {}", case.published);
-        println!(
-            "  found {:.2} in {:.1} s; by chance best {:.1}, median {:.1} of {}",
-            found.condition,
-            clock.elapsed().as_secs_f64(),
-            chance.best.unwrap_or(f64::NAN),
-            chance.median.unwrap_or(f64::NAN),
-            chance.motions
-        );
-    }
-    Ok(())
 }
