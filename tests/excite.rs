@@ -39,6 +39,9 @@ fn said(output: &Output) -> String {
 const SIGMA: [f64; 2] = [0.4, 0.1];
 const RATE_HZ: f64 = 500.0;
 
+/// The description of the paper's robot, whose parameters are in it.
+const SCARA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/robots/scara.toml");
+
 /// The paper's SCARA with its own parameters.
 fn scara() -> (&'static dyn IdentificationModel, Vec<f64>) {
     let robot = robot("scara");
@@ -263,8 +266,44 @@ fn effects_that_are_to_be_told_apart_get_columns_and_a_motion() {
 }
 
 #[test]
+fn effects_that_only_the_catalogue_has_get_columns_and_a_motion() {
+    let list = "drive_gain@1,load_dependent_friction@1,FS1";
+    let output = idim(&[
+        "excite",
+        "scara",
+        "--separate",
+        list,
+        "--parameters",
+        SCARA,
+        "--starts",
+        "2",
+        "--steps",
+        "40",
+        "--json",
+        "-",
+    ]);
+    assert!(output.status.success(), "{}", said(&output));
+    let found: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let parameters = found["parameters"].as_array().unwrap();
+    let alone = |name: &str| {
+        let mut all = parameters.iter();
+        let own = all.find(|parameter| parameter["name"] == name);
+        own.unwrap()["alone"].as_f64().unwrap()
+    };
+    // Friction that grows with the load is neither a share of the torque nor Coulomb's.
+    for name in ["DG1", "FL1", "FS1"] {
+        assert!(alone(name) > 0.02, "{name} {}", alone(name));
+    }
+    let chance = &found["by_chance"];
+    assert!(
+        chance["found"].as_f64() < chance["best"].as_f64(),
+        "{chance}"
+    );
+}
+
+#[test]
 fn requests_that_cannot_be_met_are_refused_in_words() {
-    let cases: [(&[&str], &str, i32); 8] = [
+    let cases: [(&[&str], &str, i32); 11] = [
         (&["--separate", "magic@1"], "there is no effect `magic`", 2),
         (&["--separate", "stribeck@9"], "there is no joint `9`", 2),
         (
@@ -273,8 +312,24 @@ fn requests_that_cannot_be_met_are_refused_in_words() {
             2,
         ),
         (
+            &["--separate", "viscous_asymmetry@1,FV9"],
+            "the model has no parameter `FV9`",
+            2,
+        ),
+        (
             &["--separate", "drive_gain@1"],
-            "cannot be added to the model",
+            "follows from that of the robot; give its present --parameters",
+            2,
+        ),
+        (
+            &["--separate", "backlash@1"],
+            "`backlash` is no torque of the present state",
+            2,
+        ),
+        (
+            // A robot that no gravity falls on.
+            &["--separate", "base_tilt", "--parameters", SCARA],
+            "`base_tilt` does not act on the whole of this robot",
             2,
         ),
         (

@@ -54,6 +54,12 @@ impl Effects {
         self.described(&hypothesis, &[])
     }
 
+    /// Whether a description can ask for an effect.
+    pub fn can_be_described(&self, name: &str) -> bool {
+        let mut all = CATALOGUE.iter();
+        all.any(|effect| effect.entry.name == name && !effect.described.is_empty())
+    }
+
     /// The robot with further effects: a model whose columns are theirs too, to identify and to
     /// simulate with.
     ///

@@ -24,6 +24,7 @@ mod reach;
 #[cfg(test)]
 mod tests;
 mod whole;
+mod widened;
 
 use std::sync::OnceLock;
 
@@ -41,6 +42,7 @@ pub use described::toml;
 pub use extension::Extension;
 pub use guide::guide;
 pub use whole::{Gear, Whole};
+pub use widened::{WidenError, Widened};
 
 use along::Along;
 use evaluate::Linear;

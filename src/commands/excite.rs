@@ -83,7 +83,7 @@ pub struct Arguments {
     #[arg(long, value_enum, default_value = "condition")]
     criterion: Measure,
     /// Tell these effects apart instead: names of the catalogue at joints (stribeck@2,
-    /// torque_ripple@elbow) or of parameters (FV2), separated by commas.
+    /// drive_gain@elbow), of the whole robot (base_tilt), or of parameters (FV2), separated by commas.
     #[arg(
         long,
         value_name = "WHAT",
@@ -137,8 +137,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut values = given.transpose()?;
     let mut criterion = arguments.criterion();
     if !arguments.separate.is_empty() {
-        let extended = separate::extended(&robot, &arguments.separate)?;
-        values = values.map(|values| extended.values(model.as_ref(), &values));
+        let extended = separate::extended(&robot, values.as_deref(), &arguments.separate)?;
+        values = extended.values;
         criterion = Criterion::Separate {
             columns: extended.columns,
         };

@@ -1,74 +1,95 @@
 //! Effects that are to be told apart: the robot that has them, and their columns.
 
-use idim::catalogue::{Effects, entries};
+use idim::catalogue::{Effects, WidenError, Widened, entries};
 use idim::codegen::Robot;
 use idim::codegen::describe::EffectSpec;
-use idim::interpreted::Interpreter;
-use idim::runtime::model::IdentificationModel;
 
 use super::Failure;
 
 /// A robot with further effects.
 pub(super) struct Extended {
     pub robot: Robot,
-    pub model: Interpreter,
+    pub model: Widened,
+    /// Its present parameters, zero where they are new; `None` where none are known.
+    pub values: Option<Vec<f64>>,
     /// Columns of what is to be told apart, counted from 0.
     pub columns: Vec<usize>,
 }
 
-/// What is asked for: columns that are there, or effects to add.
+/// What is asked for: columns that are there, effects to add, or effects that only the catalogue has
+/// columns of, on joints counted from 0.
 enum Asked {
     Parameter(String),
     Effect(Vec<EffectSpec>),
+    Columns(String, Vec<usize>),
 }
 
-/// The robot with all effects of a list, such as `stribeck@2`, `torque_ripple@elbow`, `FV2`.
+/// The robot with all effects of a list, such as `stribeck@2`, `torque_ripple@elbow`, `FV2`,
+/// `base_tilt`, for one of present `values`.
 ///
 /// # Errors
-/// [`Failure::Usage`] for an effect, joint or parameter that is not known, or an effect that no
-/// description can ask for.
-pub(super) fn extended(robot: &Robot, list: &[String]) -> Result<Extended, Failure> {
+/// [`Failure::Usage`] for an effect, joint or parameter that is not known, or an effect that is no
+/// torque of the present state.
+pub(super) fn extended(
+    robot: &Robot,
+    values: Option<&[f64]>,
+    list: &[String],
+) -> Result<Extended, Failure> {
     let catalogue = Effects::new(robot);
     let asked = list.iter().map(|item| asked(robot, &catalogue, item));
     let asked = asked.collect::<Result<Vec<Asked>, Failure>>()?;
     let specs: Vec<EffectSpec> = asked.iter().flat_map(specs).cloned().collect();
     let all = whole(&catalogue, &specs)?;
+    let values = values.map(|values| renamed(robot, &all, values));
+    let mut model = Widened::new(&all, values.as_deref());
     let mut columns = Vec::new();
     for (asked, item) in asked.iter().zip(list) {
-        let names = match asked {
-            Asked::Parameter(name) => vec![name.clone()],
-            Asked::Effect(specs) => added(robot, &whole(&catalogue, specs)?),
+        let found = match asked {
+            Asked::Parameter(name) => place(&all, name).into_iter().collect(),
+            Asked::Effect(specs) => {
+                let names = added(robot, &whole(&catalogue, specs)?);
+                names.iter().filter_map(|name| place(&all, name)).collect()
+            }
+            Asked::Columns(effect, joints) => model.add(effect, joints).map_err(refused)?,
         };
-        let places = names.iter().filter_map(|name| place(&all, name));
-        let before = columns.len();
-        columns.extend(places);
-        if columns.len() == before {
+        if found.is_empty() {
             return Err(Failure::Usage {
                 message: format!("`{item}` has no column of its own in the model of this robot"),
                 help: "its parameter is regrouped with others: no motion tells them apart".into(),
             });
         }
+        columns.extend(found);
     }
     columns.sort_unstable();
     columns.dedup();
     Ok(Extended {
-        model: Interpreter::new(&all),
+        values: values.map(|_| model.parameters()),
+        model,
         robot: all,
         columns,
     })
 }
 
-impl Extended {
-    /// Parameters of the robot without the effects for the one with them, which has zero for them.
-    pub fn values(&self, model: &dyn IdentificationModel, values: &[f64]) -> Vec<f64> {
-        let columns = model.columns();
-        let value = |name: &str| {
-            let place = columns.iter().position(|column| column.name == name);
-            place.and_then(|place| values.get(place)).copied()
-        };
-        let all = self.model.columns().iter();
-        all.map(|column| value(&column.name).unwrap_or(0.0))
-            .collect()
+/// Parameters of one robot for one with more of them, which has zero for the others.
+fn renamed(robot: &Robot, all: &Robot, values: &[f64]) -> Vec<f64> {
+    let value = |name: &str| values.get(place(robot, name)?).copied();
+    let parameters = all.base.parameters.iter();
+    parameters
+        .map(|parameter| value(&parameter.name).unwrap_or(0.0))
+        .collect()
+}
+
+fn refused(error: WidenError) -> Failure {
+    Failure::Usage {
+        message: error.to_string(),
+        help: match error {
+            WidenError::NotOfTheState(_) => "`idim diagnose --list` says what it is and which log shows it",
+            WidenError::NoParameters(_) => "such as the JSON of `idim identify --json`",
+            WidenError::NotThere(..) => {
+                "name a joint it may act on (link_length@2), or none for the whole robot (base_tilt)"
+            }
+        }
+        .into(),
     }
 }
 
@@ -81,7 +102,7 @@ fn whole(catalogue: &Effects, specs: &[EffectSpec]) -> Result<Robot, Failure> {
 
 fn specs(asked: &Asked) -> &[EffectSpec] {
     match asked {
-        Asked::Parameter(_) => &[],
+        Asked::Parameter(_) | Asked::Columns(..) => &[],
         Asked::Effect(specs) => specs,
     }
 }
@@ -98,9 +119,11 @@ fn place(robot: &Robot, name: &str) -> Option<usize> {
 }
 
 fn asked(robot: &Robot, catalogue: &Effects, item: &str) -> Result<Asked, Failure> {
+    let known = |effect: &str| entries().iter().any(|entry| entry.name == effect);
     let Some((effect, joint)) = item.split_once('@') else {
         return match place(robot, item) {
             Some(_) => Ok(Asked::Parameter(item.to_owned())),
+            None if known(item) => Ok(Asked::Columns(item.to_owned(), Vec::new())),
             None => Err(Failure::Usage {
                 message: format!("the model has no parameter `{item}`"),
                 help: "name a parameter (`idim describe` lists them) or an effect at a joint, such as stribeck@2".into(),
@@ -108,23 +131,33 @@ fn asked(robot: &Robot, catalogue: &Effects, item: &str) -> Result<Asked, Failur
         };
     };
     let joint = joint_of(robot, joint)?;
-    if !entries().iter().any(|entry| entry.name == effect) {
+    if !known(effect) {
         let known: Vec<&str> = entries().iter().map(|entry| entry.name).collect();
         return Err(Failure::Usage {
             message: format!("there is no effect `{effect}`"),
             help: format!("the catalogue has {}", known.join(", ")),
         });
     }
-    let specs = catalogue.asked(effect, joint);
-    if specs.is_empty() {
-        return Err(Failure::Usage {
-            message: format!("`{item}` cannot be added to the model of this robot"),
-            help: "the robot has it already (then name its parameter), or it is no column that a \
-                   description can ask for"
-                .into(),
-        });
+    if catalogue.can_be_described(effect) {
+        return described(catalogue, effect, joint, item);
     }
-    Ok(Asked::Effect(specs))
+    Ok(Asked::Columns(effect.to_owned(), vec![joint]))
+}
+
+fn described(
+    catalogue: &Effects,
+    effect: &str,
+    joint: usize,
+    item: &str,
+) -> Result<Asked, Failure> {
+    let specs = catalogue.asked(effect, joint);
+    match specs.is_empty() {
+        true => Err(Failure::Usage {
+            message: format!("`{item}` cannot be added to the model of this robot"),
+            help: "the robot has it already: name its parameter".into(),
+        }),
+        false => Ok(Asked::Effect(specs)),
+    }
 }
 
 /// A joint by its number, from 1, or its name; counted from 0.
