@@ -32,7 +32,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         let found = excite(&task, &settings, &|| ())?;
         let chance = found.by_chance;
         println!("{} ({} columns)", case.name, model.columns().len());
-        println!("  published {}", case.published);
+        let own = case.condition.map(|it| format!("; {it} on idim's columns"));
+        println!("  published {}{}", case.published, own.unwrap_or_default());
         println!(
             "  found {:.2} in {:.1} s; by chance best {:.1}, median {:.1} of {}",
             found.condition,
