@@ -82,6 +82,11 @@ coupling = [[1, 0], [0.5, 1]]
 ZZ1 = 3.5
 [prior]
 mass = 0.1
+[[link]]
+name = "elbow"
+mass = 2.0
+box = [[-0.1, -0.1, 0], ["L", 0.1, 0.2]]
+symmetric = ["xy", "xz"]
 [scaled]
 LMX2 = "L*MX2"
 "#;
