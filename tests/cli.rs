@@ -124,6 +124,32 @@ fn describe_of_an_arm_of_six_axes_is_understood_in_a_minute() {
 }
 
 #[test]
+fn describe_names_the_columns_that_stand_on_a_detail() {
+    let folder = Folder::new();
+    let arm = |offset: &str| {
+        let text = format!(
+            "name = \"arm\"\neffects = []\ngravity = [0, 0, 0]\n\
+             [[joint]]\nname = \"a\"\nkind = \"revolute\"\n\
+             [[joint]]\nname = \"b\"\nkind = \"revolute\"\nd = {offset}\n"
+        );
+        folder.file("arm.toml", &text)
+    };
+    let near = stdout(&idim(&["describe", &arm("1e-6")]));
+    for piece in [
+        "keeps MX2, MY2 among the columns",
+        "3e5 times less",
+        "2 base\n",
+    ] {
+        assert!(near.contains(piece), "no `{piece}` in:\n{near}");
+    }
+    let json = stdout(&idim(&["describe", &arm("1e-6"), "--json", "-"]));
+    let json: Value = serde_json::from_str(&json).unwrap();
+    assert_eq!(json["detail"]["columns"], serde_json::json!(["MX2", "MY2"]));
+    let far = stdout(&idim(&["describe", &arm("0.3")]));
+    assert!(!far.contains("detail"), "{far}");
+}
+
+#[test]
 fn generate_writes_the_same_code_to_a_file_and_to_standard_output() {
     let folder = Folder::new();
     let path = folder.path("scara.rs");

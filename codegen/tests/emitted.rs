@@ -456,14 +456,29 @@ fn same_robot_gives_the_same_bytes_in_every_thread() {
 #[test]
 fn long_functions_come_in_parts_of_bounded_length() {
     let rust = emit::rust(&humanoid()).unwrap();
-    let parts = rust.matches("\nstruct explicit_").count();
-    assert!(parts > 2, "{parts}");
+    let parts_of_rust = rust.matches("\nstruct explicit_").count();
+    assert!(parts_of_rust > 2, "{parts_of_rust}");
     for part in rust.split("> for explicit_").skip(1) {
         let body = part.split("\n}").next().unwrap();
-        let operators = [" * ", " + ", " - "].map(|o| body.matches(o).count());
-        let operators: usize = operators.iter().sum();
-        assert!(operators <= 1000, "{operators} operations");
+        assert!(operators(body) <= 1000, "{}", operators(body));
     }
+    let python = emit::python(&humanoid()).text;
+    let functions: Vec<&str> = python.split("\ndef ").skip(1).collect();
+    let parts = functions.iter().filter(|text| text.starts_with("_D_"));
+    assert_eq!(parts.count(), parts_of_rust);
+    for function in functions {
+        let most = if function.starts_with('_') {
+            1000
+        } else {
+            1500
+        };
+        assert!(operators(function) <= most, "{}", operators(function));
+    }
+}
+
+fn operators(text: &str) -> usize {
+    let operators = [" * ", " + ", " - "].map(|o| text.matches(o).count());
+    operators.iter().sum()
 }
 
 /// The description is read by Rust too: the words that break it are the same kind.

@@ -14,11 +14,12 @@ mod projected;
 )]
 mod robots;
 
+use idim_codegen::builder;
 use idim_codegen::mechanism::{Affine, Follow};
 use idim_codegen::robot::Robot;
 use projected::{check, check_within, robot};
 use robots::reference;
-use serde_json::Value;
+use serde_json::{Value, json};
 
 /// Two fingers on a slide: one follows a motor at half its speed, its tip follows it in turn, and a
 /// rack follows the motor as a displacement. Axes of all kinds, numbers without meaning.
@@ -181,42 +182,106 @@ fn symoro(source: &Value, lengths: &str) -> String {
         let all: Vec<String> = frames.iter().map(of).collect();
         format!("{key} = {{{}}}\n", all.join(","))
     };
+    let keys = [
+        "ant", "sigma", "mu", "gamma", "b", "alpha", "d", "theta", "r",
+    ];
+    let lists: String = keys.into_iter().map(list).collect();
+    // Lengths of joints that are cut are unknown to a tree.
+    let known = lengths.lines().filter(|line| {
+        let name = line.split(' ').next();
+        name.is_some_and(|name| lists.contains(name))
+    });
+    let known: String = known.map(|line| format!("{line}\n")).collect();
     let name = source["name"].as_str().unwrap();
-    let mut text = format!("(* Robotname = '{name}' *)\n{lengths}Type = 2\nG = {{0,0,G3}}\n");
+    let mut text = format!("(* Robotname = '{name}' *)\n{known}Type = 2\nG = {{0,0,G3}}\n");
     for key in ["NL", "NJ", "NF"] {
         text += &format!("{key} = {}\n", source[key]);
     }
-    for key in [
-        "ant", "sigma", "mu", "gamma", "b", "alpha", "d", "theta", "r",
-    ] {
-        text += &list(key);
-    }
+    text += &lists;
     text + &format!(
         "IA = {{{}}}\n",
         vec!["0"; source["NL"].as_u64().unwrap() as usize].join(",")
     )
 }
 
-/// Rank of G^T Y_tree, measured here: two parallelograms in series, a rhombus, and a robot whose
-/// two cylinders move triangles. SYMORO prints the numbers of the open trees.
+/// Lengths of TwoLoops and of AKR3000.
+const TWO: &str = "g12 = 0.4\nd3 = 0.6\nd4 = 0.5\nd7 = 0.15\nd12 = 0.15\n";
+const CYLINDERS: &str = "D3 = 0.35\nD4 = -0.4\nD7 = 0.8\nRL8 = 0.7\nD13 = 0.3\nD14 = 0.35\n\
+                         gam13 = 2.6\ngam14 = -2.2\n";
+
+/// A rhombus, two parallelograms in series that keep a hand level, and a robot whose two cylinders
+/// move triangles. Their base parameters are counted by the rank of the energies of all links at
+/// random postures, loops closed by Newton's method, in a program that shares nothing with this one.
 #[test]
 fn loops_of_the_reference_are_the_projected_trees() {
     let Some(geometry) = reference("mdh_geometry.json") else {
         return;
     };
-    let two = "g12 = 0.4\nd3 = 0.6\nd4 = 0.5\nd7 = 0.15\nd12 = 0.15\n";
-    let cylinders = "D3 = 0.35\nD4 = -0.4\nD7 = 0.8\nRL8 = 0.7\nD13 = 0.3\nD14 = 0.35\n\
-                     gam13 = 2.6\ngam14 = -2.2\n";
-    for (name, lengths, dyads) in [
-        ("testLoop", "", 0),
-        ("TwoLoops", two, 0),
-        ("AKR3000", cylinders, 2),
+    for (name, lengths, dyads, parameters) in [
+        ("testLoop", "", 0, 4),
+        ("TwoLoops", TWO, 0, 22),
+        ("AKR3000", CYLINDERS, 2, 54),
     ] {
         let robot = robot("x.par", &symoro(&geometry["robots"][name], lengths));
         assert_eq!(robot.mechanism.dyads.len(), dyads, "{name}");
+        assert_eq!(robot.base.parameters.len(), parameters, "{name}");
         assert!(robot.base.gap > 1e6, "{name}: {:.1e}", robot.base.gap);
         check_within(&robot, &|q| robot.mechanism.bend(q) > 0.6, 1e-7);
     }
+}
+
+/// What SYMORO prints for robots with closed loops are the base parameters of their open trees.
+#[test]
+fn open_trees_have_the_base_parameters_that_symoro_prints_for_the_loops() {
+    let (Some(geometry), Some(symoro_prints)) =
+        (reference("mdh_geometry.json"), reference("opensymoro.json"))
+    else {
+        return;
+    };
+    for (name, lengths) in [
+        ("testLoop", ""),
+        ("TwoLoops", TWO),
+        ("AKR3000", CYLINDERS),
+        ("RX90_2loops", TRIANGLES),
+        (
+            "SR400",
+            "d2 = 0.5\nd3 = 0.9\nd4 = 0.15\nd8 = 0.4\nr4 = 0.8\n",
+        ),
+    ] {
+        let mut tree = geometry["robots"][name].clone();
+        let links = tree["NL"].as_u64().unwrap() as usize;
+        let frames = tree["frames"].as_array_mut().unwrap();
+        frames.truncate(links);
+        for frame in frames {
+            frame["mu"] = json!(1);
+        }
+        (tree["NJ"], tree["NF"]) = (json!(links), json!(links));
+        let text = symoro(&tree, lengths).replace("Type = 2", "Type = 1");
+        let printed = &symoro_prints["results"][name]["base_params"]["n_rigid"];
+        assert_eq!(
+            robot("x.par", &text).base.parameters.len(),
+            *printed,
+            "{name}"
+        );
+    }
+}
+
+/// Lengths of RX90_2loops.
+const TRIANGLES: &str = "d3 = 0.45\nd4 = 0.4\nd6 = 0.15\nd7 = 0.12\n";
+
+/// Each loop of this description has three turning joints, the cut one included, whose points
+/// d3, d6 and sqrt(d3^2 + d6^2) apart (d4 and d7 likewise) form a triangle: the motor of joint 3
+/// cannot turn, and there are no base parameters to count. (The six constraints have rank six in
+/// the six joints of the loops at every posture that closes them.)
+#[test]
+fn loops_of_the_reference_that_cannot_move_are_an_error_that_names_them() {
+    let Some(geometry) = reference("mdh_geometry.json") else {
+        return;
+    };
+    let text = symoro(&geometry["robots"]["RX90_2loops"], TRIANGLES);
+    let error = builder::read_texts(&[("x.par", &text)]).unwrap_err();
+    let error = error.to_string();
+    assert!(error.contains("is rigid"), "{error}");
 }
 
 #[test]

@@ -9,6 +9,7 @@
 )]
 #![allow(dead_code, reason = "what random robots need beyond counting")]
 
+mod projected;
 mod random;
 
 use std::f64::consts::FRAC_PI_2;
@@ -16,9 +17,10 @@ use std::time::{Duration, Instant};
 
 use idim_codegen::base::BaseParameter;
 use idim_codegen::derive::ParameterKind;
+use idim_codegen::mechanism::Follow;
 use idim_codegen::robot::Robot;
 use idim_codegen::{BuildError, builder};
-use random::count::base_parameters;
+use random::count::{Mimic, base_parameters, base_parameters_with};
 use random::draw::{Inertial, Joint, Kind, Robot as Drawn};
 use random::text;
 
@@ -192,6 +194,109 @@ fn hand_of_five_fingers_on_a_wrist_has_the_right_base_parameters() {
     let robot = derive(&hand.urdf()).unwrap();
     assert_eq!(robot.mechanism.joints.len(), 22);
     assert_eq!(robot.base.parameters.len(), base_parameters(&hand.0));
+}
+
+/// A wrist, a thumb, and four fingers of which the last follows the one beside it; in each finger
+/// the middle joint follows the first and the tip the middle one, as tendons and linkages have it.
+fn coupled_hand() -> (Body, Vec<Mimic>) {
+    let mut hand = Body::new();
+    let mut mimics = Vec::new();
+    let mut follow = |link: usize, of: usize, multiplier: f64, offset: f64| {
+        // The joint that carries link k is joint k - 1.
+        let (joint, of) = (link - 1, of - 1);
+        mimics.push(Mimic {
+            joint,
+            of,
+            multiplier,
+            offset,
+        });
+    };
+    let palm = hand.limb(0, [0.0, 0.0, 0.1], "yx", [0.0; 3]);
+    let turned = hand.push(Kind::Revolute, palm, [0.0, 0.0, 1.0], [-0.03, 0.01, 0.03]);
+    let mut phalanx = turned;
+    for (index, axis) in [[0.0, 1.0, 0.0], [0.0, 1.0, 0.0], [0.0, 1.0, 0.0]]
+        .into_iter()
+        .enumerate()
+    {
+        let before = phalanx;
+        phalanx = hand.push(Kind::Revolute, before, axis, [-0.02, 0.0, 0.03]);
+        if index > 0 {
+            follow(phalanx, before, 0.7, 0.02);
+        }
+    }
+    let mut knuckles = Vec::new();
+    for finger in 0..4 {
+        let place = [0.02 * f64::from(finger) - 0.03, 0.0, 0.09];
+        let knuckle = hand.push(Kind::Revolute, palm, [1.0, 0.0, 0.0], place);
+        let middle = hand.push(Kind::Revolute, knuckle, [1.0, 0.0, 0.0], [0.0, 0.0, 0.04]);
+        let tip = hand.push(
+            Kind::Revolute,
+            middle,
+            [1.0, 0.1, 0.0].map(|x| x / 1.01f64.sqrt()),
+            [0.0, 0.002, 0.03],
+        );
+        hand.push(Kind::Fixed, tip, [0.0; 3], [0.0, 0.0, 0.02]);
+        follow(middle, knuckle, 1.1, 0.05);
+        follow(tip, middle, -0.8, 0.0);
+        knuckles.push(knuckle);
+    }
+    follow(knuckles[3], knuckles[2], 1.0, 0.0);
+    (hand, mimics)
+}
+
+impl Body {
+    /// The same with joints that follow others.
+    fn urdf_with(&self, mimics: &[Mimic]) -> String {
+        let mut text = self.urdf();
+        for Mimic {
+            joint,
+            of,
+            multiplier,
+            offset,
+        } in mimics
+        {
+            let numbers = match (*multiplier, *offset) {
+                (1.0, 0.0) => String::new(),
+                _ => format!(" multiplier=\"{multiplier}\" offset=\"{offset}\""),
+            };
+            let start = text.find(&format!("<joint name=\"j{joint}\" ")).unwrap();
+            let end = start + text[start..].find("</joint>").unwrap();
+            text.insert_str(end, &format!("<mimic joint=\"j{of}\"{numbers}/>"));
+        }
+        text
+    }
+}
+
+/// Counted by the rank of the torques that the seven motors feel, with Newton and Euler.
+#[test]
+fn hand_with_chains_of_mimic_joints_has_the_right_base_parameters() {
+    let (hand, mimics) = coupled_hand();
+    let robot = derive(&hand.urdf_with(&mimics)).unwrap();
+    assert_eq!(
+        (robot.mechanism.driven, robot.mechanism.joints.len()),
+        (7, 18)
+    );
+    let expected = base_parameters_with(&hand.0, &mimics);
+    assert_eq!(robot.base.parameters.len(), expected);
+    assert!(expected < base_parameters(&hand.0));
+    // The last tip follows the knuckle beside it through three joints.
+    let last = robot
+        .mechanism
+        .joints
+        .iter()
+        .position(|joint| joint.name == "j20");
+    let Follow::Sum(sum) = robot.mechanism.follow(last.unwrap()) else {
+        panic!("no sum");
+    };
+    let [(driver, ratio)] = sum.terms[..] else {
+        panic!("{sum:?}");
+    };
+    assert_eq!(robot.mechanism.joints[driver].name, "j14");
+    assert!(
+        (ratio + 0.88).abs() < 1e-12 && (sum.offset + 0.04).abs() < 1e-12,
+        "{sum:?}"
+    );
+    projected::check(&robot);
 }
 
 #[test]

@@ -56,6 +56,9 @@ struct Report {
     followers: Vec<FollowerReport>,
     standard_parameters: usize,
     rank_gap: f64,
+    /// Base parameters that a detail of the description alone keeps in the set.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    detail: Option<DetailReport>,
     lengths: Vec<LengthReport>,
     base_parameters: Vec<ParameterReport>,
     operations: OperationsReport,
@@ -74,6 +77,13 @@ struct JointReport {
     theta: f64,
     position: [f64; 3],
     bodies: Vec<String>,
+}
+
+#[derive(Debug, Serialize)]
+struct DetailReport {
+    columns: Vec<String>,
+    /// The precision that it takes to tell them from the others.
+    drop: f64,
 }
 
 /// A length that relations speak of by name, m.
@@ -144,6 +154,10 @@ impl Report {
                 .collect(),
             standard_parameters: robot.base.standard,
             rank_gap: robot.base.gap,
+            detail: robot.base.detail.as_ref().map(|detail| DetailReport {
+                columns: named(robot, &detail.parameters),
+                drop: detail.drop,
+            }),
             lengths: lengths::of(&robot.mechanism, &robot.description)
                 .into_iter()
                 .map(|length| LengthReport {
@@ -298,8 +312,37 @@ fn text(robot: &Robot) -> String {
     followers(&mut out, robot);
     snaps(&mut out, robot);
     parameters(&mut out, robot);
+    detail(&mut out, robot);
     operations(&mut out, robot);
     out
+}
+
+/// Names of base parameters.
+fn named(robot: &Robot, places: &[usize]) -> Vec<String> {
+    let parameters = &robot.base.parameters;
+    let names = places.iter().map(|&place| parameters[place].name.clone());
+    names.collect()
+}
+
+/// What an identification can know of columns that stand on a detail.
+fn detail(out: &mut String, robot: &Robot) {
+    let Some(detail) = &robot.base.detail else {
+        return;
+    };
+    let names = named(robot, &detail.parameters);
+    let (stand, them, their) = match names.len() {
+        1 => ("stands", "it", "its value"),
+        _ => ("stand", "them", "their values"),
+    };
+    let _ = writeln!(
+        out,
+        "\n  {} {stand} on a detail of the description: beside the others, {:.0e} times less is left\n  \
+         of {them} than of any other column, and a log has to be that precise to identify {them}.\n  \
+         An axis that is almost parallel, a length that is almost zero, a loop that is almost a\n  \
+         parallelogram, gravity that is almost along an axis? Make it exact, or do without {their}.",
+        names.join(", "),
+        detail.drop
+    );
 }
 
 fn joints(out: &mut String, robot: &Robot) {

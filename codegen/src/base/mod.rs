@@ -4,6 +4,7 @@
 //! of others is regrouped into them: X_b = X + sum of coefficients times the regrouped parameters
 //! (Gautier 1991, "Numerical calculation of the base inertial parameters").
 
+pub mod detail;
 pub mod lengths;
 pub mod names;
 pub mod rank;
@@ -55,6 +56,8 @@ pub struct BaseParameters {
     pub standard: usize,
     /// Singular value of the last kept column over that of the first dropped one.
     pub gap: f64,
+    /// Those that a detail of the description alone keeps among them, if there are any.
+    pub detail: Option<detail::Detail>,
 }
 
 /// Why base parameters could not be derived.
@@ -63,8 +66,9 @@ pub enum BaseError {
     /// The regressor has no clear rank.
     #[error(
         "the rank of the regressor is not clear: the gap between kept and dropped singular values \
-         is {gap:.1e} (at least 1e3 is needed); nearly dependent: {}. Look for joints that are \
-         almost parallel or lengths that are almost zero and make them exact",
+         is {gap:.1e} (at least 1e3 is needed, and no column within it); nearly dependent: {}. Look \
+         for joints that are almost parallel, lengths that are almost zero and loops that are \
+         almost parallelograms, and make them exact",
         columns.join(", ")
     )]
     NoGap {
@@ -103,12 +107,14 @@ pub fn parameters(
     let priority = names::priority(mechanism, &standard);
     let split = rank::split(&samples, &priority, &standard)?;
     let names: Vec<String> = standard.iter().map(|p| p.name.clone()).collect();
-    let mut parameters = regroup::regroup(&samples, &split, standard);
+    let mut parameters = regroup::regroup(&samples, &split, &standard);
+    let detail = detail::find(&samples, &split, &standard, &parameters);
     scale::apply(graph, &mut parameters, &description.scaled)?;
     relation::write(&mut parameters, mechanism, description, &split, &names);
     Ok(BaseParameters {
         parameters,
         standard: names.len(),
         gap: split.gap,
+        detail,
     })
 }

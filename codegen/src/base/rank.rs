@@ -15,6 +15,8 @@ pub struct Split {
     pub kept: Vec<usize>,
     /// Columns that depend on the kept ones.
     pub dependent: Vec<usize>,
+    /// What is left of each kept column, taken as a unit vector, beside those kept before it.
+    pub apart: Vec<f64>,
     /// Last kept over first dropped singular value of the scaled regressor.
     pub gap: f64,
 }
@@ -41,6 +43,7 @@ pub fn split(w: &DMatrix<f64>, priority: &[usize], all: &[Standard]) -> Result<S
         return Ok(Split {
             kept: vec![],
             dependent: vec![],
+            apart: vec![],
             gap: f64::INFINITY,
         });
     }
@@ -53,11 +56,13 @@ pub fn split(w: &DMatrix<f64>, priority: &[usize], all: &[Standard]) -> Result<S
     let mut split = Split {
         kept: vec![],
         dependent: vec![],
+        apart: vec![],
         gap,
     };
     for (&column, &residual) in live.iter().zip(&residuals) {
         if residual > threshold {
             split.kept.push(column);
+            split.apart.push(residual);
         } else {
             split.dependent.push(column);
         }

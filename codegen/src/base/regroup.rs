@@ -10,7 +10,7 @@ use crate::derive::Standard;
 const ROUNDING: f64 = 1e-9;
 
 /// Builds the base parameters, link by link, inertial before drive before friction.
-pub fn regroup(w: &DMatrix<f64>, split: &Split, standard: Vec<Standard>) -> Vec<BaseParameter> {
+pub fn regroup(w: &DMatrix<f64>, split: &Split, standard: &[Standard]) -> Vec<BaseParameter> {
     let coefficients = coefficients(w, split);
     let mut order: Vec<usize> = (0..split.kept.len()).collect();
     order.sort_by_key(|&place| {

@@ -46,10 +46,6 @@ impl Language for C {
         number(value)
     }
 
-    fn divides(&self) -> bool {
-        true
-    }
-
     fn computes_trig(&self) -> bool {
         true
     }

@@ -16,8 +16,6 @@ pub trait Language {
     /// A function of an operand: `bare` as it is, `factor` in parentheses where a product or a
     /// method needs them.
     fn call(&self, function: Function, bare: &str, factor: &str) -> String;
-    /// Whether long functions are cut into parts, for the sake of a compiler.
-    fn divides(&self) -> bool;
     /// Whether a function computes the sines and cosines that it needs; otherwise the state has
     /// them.
     fn computes_trig(&self) -> bool;

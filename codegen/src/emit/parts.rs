@@ -27,10 +27,7 @@ pub(super) fn divide(
     writer: &mut Writer<'_>,
     language: &dyn Language,
 ) -> Body {
-    let pieces = match language.divides() {
-        true => cut(statements),
-        false => vec![statements],
-    };
+    let pieces = cut(statements);
     let mut scratch = Scratch::new(graph, &pieces, language.computes_trig());
     let pieces = pieces.into_iter().enumerate();
     let parts =

@@ -1,7 +1,7 @@
 //! Python: one module over numpy, for one state or for many at once.
 
 use super::File;
-use super::function::Line;
+use super::function::{Line, Part};
 use super::language::Language;
 use super::signature::{Prototype, prototypes};
 use super::summary::summary;
@@ -14,7 +14,7 @@ use crate::robot::Robot;
 /// Words that a local variable cannot have: keywords, arguments, what a function calls.
 const RESERVED: &str = "False None True and as assert async await break class continue def del \
     elif else except finally for from global if import in is lambda nonlocal not or pass raise \
-    return try while with yield match case type np out q qd qdd slip D P R h dh X tau M g T J \
+    return try while with yield match case type np out live q qd qdd slip D P R h dh X tau M g T J \
     JOINTS PARAMETERS _signals";
 
 /// Python as a [`Language`].
@@ -45,10 +45,6 @@ impl Language for Python {
 
     fn number(&self, value: f64) -> String {
         number(value)
-    }
-
-    fn divides(&self) -> bool {
-        false
     }
 
     fn computes_trig(&self) -> bool {
@@ -181,16 +177,59 @@ fn definition(robot: &Robot, signature: &Prototype<'_>) -> String {
         joints: robot.mechanism.driven,
     };
     let body = signature.body(robot, "out", &language);
-    let mut text = opening(signature);
-    let signals = body.inputs().into_iter();
-    for input in signals.filter(|input| !matches!(input, Input::Parameter(_))) {
+    let mut text = String::new();
+    let mut calls = String::new();
+    if let [only] = body.parts.as_slice() {
+        calls = statements(only);
+    } else {
+        calls.push_str("    live: dict[int, NDArray[np.float64]] = {}\n");
+        for (index, part) in body.parts.iter().enumerate() {
+            let name = format!("_{}_{}", signature.name, index + 1);
+            let given = arguments(signature, part);
+            text.push_str(&self::part(signature, &name, &given, part));
+            calls.push_str(&format!("    {name}({})\n", given.join(", ")));
+        }
+    }
+    format!("{text}{}{calls}    return out\n", opening(signature))
+}
+
+/// A part of a long function: it takes what it reads, and what the parts hand on to each other.
+fn part(signature: &Prototype<'_>, name: &str, given: &[&str], part: &Part) -> String {
+    let given: Vec<String> = (given.iter())
+        .map(|&argument| match argument {
+            "live" => "live: dict[int, NDArray[np.float64]]".to_owned(),
+            array => format!("{array}: NDArray[np.float64]"),
+        })
+        .collect();
+    format!(
+        "\n\ndef {name}(\n    {},\n) -> None:\n    \"\"\"A part of `{}`.\"\"\"\n{}",
+        given.join(",\n    "),
+        signature.name,
+        statements(part)
+    )
+}
+
+/// What a part reads and writes, in the order of the function's own arguments.
+fn arguments<'a>(signature: &Prototype<'a>, part: &Part) -> Vec<&'a str> {
+    let parameters = signature.parameters.then_some("X");
+    let all = signature.all_signals().chain(parameters);
+    let reads = |argument: &&str| part.inputs.iter().any(|&input| place(input).0 == *argument);
+    let read = all.filter(reads).chain(["live"]);
+    read.chain(part.outputs()).collect()
+}
+
+/// Signals, sines and cosines, then the lines of a function or a part.
+fn statements(part: &Part) -> String {
+    let mut text = String::new();
+    let signals = part.inputs.iter();
+    for &input in signals.filter(|input| !matches!(input, Input::Parameter(_))) {
         let (signal, joint) = place(input);
         text.push_str(&format!(
             "    {signal}{} = {signal}[..., {joint}]\n",
             joint + 1
         ));
     }
-    for trig in body.parts.iter().flat_map(|part| &part.trig) {
+    for trig in &part.trig {
         let angle = trig.code(|joint| format!("q{}", joint + 1), number);
         for (name, function) in [(&trig.sine, "sin"), (&trig.cosine, "cos")] {
             if let Some(name) = name {
@@ -198,8 +237,7 @@ fn definition(robot: &Robot, signature: &Prototype<'_>) -> String {
             }
         }
     }
-    text.extend(body.parts.iter().flat_map(|part| &part.lines).map(line));
-    text.push_str("    return out\n");
+    text.extend(part.lines.iter().map(line));
     text
 }
 

@@ -35,16 +35,54 @@ fn bodies() -> Vec<Inertial> {
     bodies
 }
 
+/// A joint that follows another: its position is multiplier times that of the other, plus offset.
+#[derive(Clone, Copy, Debug)]
+pub struct Mimic {
+    pub joint: usize,
+    pub of: usize,
+    pub multiplier: f64,
+    pub offset: f64,
+}
+
 /// The number of base parameters of the rigid bodies.
 pub fn base_parameters(robot: &Robot) -> usize {
+    base_parameters_with(robot, &[])
+}
+
+/// The same of a robot some of whose joints follow others, possibly one after the other: the
+/// driven joints alone move, and feel the torques of what follows them by the ratios of the speeds.
+pub fn base_parameters_with(robot: &Robot, mimics: &[Mimic]) -> usize {
     let moving = robot.moving();
-    let states = 40;
+    let follows = |joint: usize| mimics.iter().find(|mimic| mimic.joint == joint);
+    let driven: Vec<usize> = (moving.iter().copied())
+        .filter(|&joint| follows(joint).is_none())
+        .collect();
+    let laws: Vec<(usize, f64, f64)> = moving
+        .iter()
+        .map(|&joint| {
+            let (mut at, mut ratio, mut offset) = (joint, 1.0, 0.0);
+            while let Some(mimic) = follows(at) {
+                offset += ratio * mimic.offset;
+                (at, ratio) = (mimic.of, ratio * mimic.multiplier);
+            }
+            let driver = driven.iter().position(|&known| known == at);
+            (driver.unwrap(), ratio, offset)
+        })
+        .collect();
+    let states = 40.max(2 * 10 * moving.len() / driven.len());
     let mut draw = Draw::new(0xc0);
     let mut columns: Vec<Vec<f64>> = vec![Vec::new(); 10 * moving.len()];
     for _ in 0..states {
         let mut series =
-            |range: f64| -> Vec<f64> { moving.iter().map(|_| range * draw.unit()).collect() };
+            |range: f64| -> Vec<f64> { driven.iter().map(|_| range * draw.unit()).collect() };
         let (q, qd, qdd) = (series(3.0), series(3.0), series(5.0));
+        let all = |series: &[f64], shifted: f64| -> Vec<f64> {
+            let of = |&(driver, ratio, offset): &(usize, f64, f64)| {
+                ratio * series[driver] + shifted * offset
+            };
+            laws.iter().map(of).collect()
+        };
+        let (q, qd, qdd) = (all(&q, 1.0), all(&qd, 0.0), all(&qdd, 0.0));
         let mut bare = robot.clone();
         for joint in &mut bare.joints {
             joint.inertial = None;
@@ -53,7 +91,11 @@ pub fn base_parameters(robot: &Robot) -> usize {
             for (index, body) in bodies().into_iter().enumerate() {
                 bare.joints[joint].inertial = Some(body);
                 let torques = newton_euler::torques(&bare, &q, &qd, &qdd);
-                columns[10 * link + index].extend(torques);
+                let mut felt = vec![0.0; driven.len()];
+                for (torque, &(driver, ratio, _)) in torques.iter().zip(&laws) {
+                    felt[driver] += ratio * torque;
+                }
+                columns[10 * link + index].extend(felt);
             }
             bare.joints[joint].inertial = None;
         }

@@ -53,10 +53,6 @@ impl Language for Rust {
         format!("x.constant({})", Literal::f64_unsuffixed(value))
     }
 
-    fn divides(&self) -> bool {
-        true
-    }
-
     fn computes_trig(&self) -> bool {
         false
     }
