@@ -1,18 +1,20 @@
 #!/usr/bin/env python3
 """The regressor D of an arm per sample: idim beside Pinocchio and CasADi, in turn, minimum of rounds.
 
-    pip install pin casadi numpy
+    pip install pin cmeel-eigen casadi numpy
     regressor.py [--idim target/release/idim] [--rounds 7] [ROBOT.toml ...]
 
 Each robot (revolute joints in rows of Denavit-Hartenberg parameters; ur10e and panda by default) is
-taken with its rigid-body columns alone. Pinocchio is the library of its wheel (all 10 columns of each
-link; not built for this very machine), called from Python; the call costs less than the regressor of an
-arm of one joint, timed, too, which is taken off before ratios. CasADi is the C generated from
-Newton-Euler's equations in SX, common terms shared, of all columns and of idim's base columns; idim is
-its generated C and its generated Rust, one sample at a time, in lanes as wide as the machine's
-vectors, and as identification asks for it (signals of a chunk, planar). Compilers of these:
-`-O3 -march=native -DNDEBUG` and `-C target-cpu=native`. Every one writes its whole result, which stays
-in cache. Results are compared before times are. Linux, gcc, cargo.
+taken with its rigid-body columns alone. Pinocchio is `computeJointTorqueRegressor`, all 10 columns of
+each link: its C++ templates compiled here for this very machine (nothing of the wheel's libraries is
+called, so that flags and alignments are our own), and, for what a Python user pays, the wheel's
+library called from Python, less the call of the regressor of an arm of one joint, which is timed, too.
+Ratios are to the C++. CasADi is the C generated from Newton-Euler's equations in SX, common terms
+shared, of all columns and of idim's base columns; idim is its generated C and its generated Rust, one
+sample at a time, in lanes as wide as the machine's vectors, and as identification asks for it (signals
+of a chunk, planar). Compilers of all these: `-O3 -march=native -DNDEBUG` and `-C target-cpu=native`.
+Every one computes sines and cosines itself and writes its whole result, which stays in cache. Results
+are compared before times are. Linux, gcc, cargo.
 """
 import argparse
 import math
@@ -34,8 +36,11 @@ ROOT = HERE.parent.parent
 SOURCES = HERE / "regressor"
 SAMPLES = 264  # no power of two: planar columns would fall on each other in the cache
 STANDARD = ["M", "MX", "MY", "MZ", "XX", "XY", "YY", "XZ", "YZ", "ZZ"]  # Pinocchio's order
-CALL = "pinocchio, 1 joint"
+PINOCCHIO = "pinocchio C++, all columns"
+CALL = "pinocchio Python, 1 joint"
 FLAGS = ["-O3", "-march=native", "-DNDEBUG"]
+# Pinocchio's joint types and arguments are more than Boost's lists hold by default.
+LISTS = [f"-DBOOST_{limit}" for limit in ("MPL_LIMIT_LIST_SIZE=30", "MPL_LIMIT_VECTOR_SIZE=30", "MPL_CFG_NO_PREPROCESSED_HEADERS", "FUSION_INVOKE_MAX_ARITY=12")]
 
 
 def placements(description):
@@ -115,7 +120,17 @@ def crate(folder, target):
     return (target / "release" / "idim-regressor").rename(folder / "rust.exe")
 
 
-def pinocchio(arm):
+def compiled_pinocchio(arm, folder):
+    """Compiles its templates with our harness; about a minute."""
+    prefix = next(parent for parent in pathlib.Path(pin.__file__).parents if (parent / "include/pinocchio").is_dir())
+    rows = ("{" + ",".join(repr(float(x)) for x in (*rotation.ravel(), *offset)) + "}" for rotation, offset in arm)
+    (folder / "arm.h").write_text("#define ARM " + ", ".join(rows) + "\n")
+    includes = [f"-I{path}" for path in (folder, SOURCES, prefix / "include", prefix / "include/eigen3")]
+    run("g++", *FLAGS, *LISTS, *includes, f"-DJOINTS={len(arm)}", SOURCES / "pinocchio.cpp", "-o", folder / "pinocchio.exe")
+    return folder / "pinocchio.exe"
+
+
+def called_pinocchio(arm):
     """Times the call from Python."""
     model, parent = pin.Model(), 0
     for rotation, offset in arm:
@@ -142,8 +157,9 @@ def contenders(arm, columns, folder, target):
     run("gcc", *FLAGS, *includes, SOURCES / "idim.c", folder / "robot.c", "-lm", "-o", folder / "c.exe")
     rust = crate(folder, target)
     dense = lambda values: values.reshape(SAMPLES, n, -1)
-    yield "pinocchio, all columns", (pinocchio(arm), lambda values: values.reshape(SAMPLES, n, 10 * n)[:, :, columns])
-    yield CALL, (pinocchio(arm[:1]), None)
+    yield PINOCCHIO, ([compiled_pinocchio(arm, folder)], lambda values: values.reshape(SAMPLES, 10 * n, n).transpose(0, 2, 1)[:, :, columns])
+    yield "pinocchio Python, all columns", (called_pinocchio(arm), lambda values: values.reshape(SAMPLES, n, 10 * n)[:, :, columns])
+    yield CALL, (called_pinocchio(arm[:1]), None)
     variables, all_columns = symbolic(arm)
     for name, matrix, chosen in (("all", all_columns, columns), ("base", all_columns[:, columns], slice(None))):
         matrix = ca.cse(ca.sparsify(matrix))
@@ -188,12 +204,12 @@ def race(robot, arguments):
 
 
 def table(robot, columns, best):
-    pinocchio, casadi = best["pinocchio, all columns"] - best[CALL], best["CasADi C, base columns"]
+    pinocchio, casadi = best[PINOCCHIO], best["CasADi C, base columns"]
     load = ", ".join(f"{x:.1f}" for x in os.getloadavg())
     print(f"{robot}, {columns} base columns (load {load} of {os.cpu_count()} cores)")
-    print(f"  {'':28}{'ns':>9}{'vs pinocchio':>15}{'vs CasADi base':>16}")
+    print(f"  {'':30}{'ns':>9}{'vs pinocchio':>15}{'vs CasADi base':>16}")
     for name, ns in best.items():
-        print(f"  {name:28}{ns:9.1f}{pinocchio / ns:14.1f}x{casadi / ns:15.2f}x")
+        print(f"  {name:30}{ns:9.1f}{pinocchio / ns:14.1f}x{casadi / ns:15.2f}x")
 
 
 def main():
