@@ -211,7 +211,7 @@ const CYLINDERS: &str = "D3 = 0.35\nD4 = -0.4\nD7 = 0.8\nRL8 = 0.7\nD13 = 0.3\nD
 
 /// A rhombus, two parallelograms in series that keep a hand level, and a robot whose two cylinders
 /// move triangles. Their base parameters are counted by the rank of the energies of all links at
-/// random postures, loops closed by Newton's method, in a program that shares nothing with this one.
+/// random postures, loops closed by Newton's method, in a program that shares nothing with this.
 #[test]
 fn loops_of_the_reference_are_the_projected_trees() {
     let Some(geometry) = reference("mdh_geometry.json") else {

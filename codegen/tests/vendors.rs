@@ -212,29 +212,21 @@ fn coupled_hand() -> (Body, Vec<Mimic>) {
         });
     };
     let palm = hand.limb(0, [0.0, 0.0, 0.1], "yx", [0.0; 3]);
-    let turned = hand.push(Kind::Revolute, palm, [0.0, 0.0, 1.0], [-0.03, 0.01, 0.03]);
-    let mut phalanx = turned;
-    for (index, axis) in [[0.0, 1.0, 0.0], [0.0, 1.0, 0.0], [0.0, 1.0, 0.0]]
-        .into_iter()
-        .enumerate()
-    {
+    let turned = hand.limb(palm, [-0.03, 0.01, 0.03], "z", [0.0; 3]);
+    let mut phalanx = hand.limb(turned, [-0.02, 0.0, 0.03], "y", [0.0; 3]);
+    for _ in 0..2 {
         let before = phalanx;
-        phalanx = hand.push(Kind::Revolute, before, axis, [-0.02, 0.0, 0.03]);
-        if index > 0 {
-            follow(phalanx, before, 0.7, 0.02);
-        }
+        phalanx = hand.limb(before, [-0.02, 0.0, 0.03], "y", [0.0; 3]);
+        follow(phalanx, before, 0.7, 0.02);
     }
     let mut knuckles = Vec::new();
     for finger in 0..4 {
         let place = [0.02 * f64::from(finger) - 0.03, 0.0, 0.09];
-        let knuckle = hand.push(Kind::Revolute, palm, [1.0, 0.0, 0.0], place);
-        let middle = hand.push(Kind::Revolute, knuckle, [1.0, 0.0, 0.0], [0.0, 0.0, 0.04]);
-        let tip = hand.push(
-            Kind::Revolute,
-            middle,
-            [1.0, 0.1, 0.0].map(|x| x / 1.01f64.sqrt()),
-            [0.0, 0.002, 0.03],
-        );
+        let knuckle = hand.limb(palm, place, "x", [0.0; 3]);
+        let middle = hand.limb(knuckle, [0.0, 0.0, 0.04], "x", [0.0; 3]);
+        // The tip leans to the thumb.
+        let leaning = [0.995, 0.0998749217771909, 0.0];
+        let tip = hand.push(Kind::Revolute, middle, leaning, [0.0, 0.002, 0.03]);
         hand.push(Kind::Fixed, tip, [0.0; 3], [0.0, 0.0, 0.02]);
         follow(middle, knuckle, 1.1, 0.05);
         follow(tip, middle, -0.8, 0.0);

@@ -53,36 +53,20 @@ pub fn base_parameters(robot: &Robot) -> usize {
 /// driven joints alone move, and feel the torques of what follows them by the ratios of the speeds.
 pub fn base_parameters_with(robot: &Robot, mimics: &[Mimic]) -> usize {
     let moving = robot.moving();
-    let follows = |joint: usize| mimics.iter().find(|mimic| mimic.joint == joint);
-    let driven: Vec<usize> = (moving.iter().copied())
-        .filter(|&joint| follows(joint).is_none())
-        .collect();
-    let laws: Vec<(usize, f64, f64)> = moving
-        .iter()
-        .map(|&joint| {
-            let (mut at, mut ratio, mut offset) = (joint, 1.0, 0.0);
-            while let Some(mimic) = follows(at) {
-                offset += ratio * mimic.offset;
-                (at, ratio) = (mimic.of, ratio * mimic.multiplier);
-            }
-            let driver = driven.iter().position(|&known| known == at);
-            (driver.unwrap(), ratio, offset)
-        })
-        .collect();
-    let states = 40.max(2 * 10 * moving.len() / driven.len());
+    let coupling = Coupling::new(&moving, mimics);
+    let states = 40.max(20 * moving.len() / coupling.driven);
     let mut draw = Draw::new(0xc0);
     let mut columns: Vec<Vec<f64>> = vec![Vec::new(); 10 * moving.len()];
     for _ in 0..states {
-        let mut series =
-            |range: f64| -> Vec<f64> { driven.iter().map(|_| range * draw.unit()).collect() };
-        let (q, qd, qdd) = (series(3.0), series(3.0), series(5.0));
-        let all = |series: &[f64], shifted: f64| -> Vec<f64> {
-            let of = |&(driver, ratio, offset): &(usize, f64, f64)| {
-                ratio * series[driver] + shifted * offset
-            };
-            laws.iter().map(of).collect()
+        let mut series = |range: f64| -> Vec<f64> {
+            (0..coupling.driven).map(|_| range * draw.unit()).collect()
         };
-        let (q, qd, qdd) = (all(&q, 1.0), all(&qd, 0.0), all(&qdd, 0.0));
+        let (q, qd, qdd) = (series(3.0), series(3.0), series(5.0));
+        let (q, qd, qdd) = (
+            coupling.positions(&q),
+            coupling.rates(&qd),
+            coupling.rates(&qdd),
+        );
         let mut bare = robot.clone();
         for joint in &mut bare.joints {
             joint.inertial = None;
@@ -91,16 +75,61 @@ pub fn base_parameters_with(robot: &Robot, mimics: &[Mimic]) -> usize {
             for (index, body) in bodies().into_iter().enumerate() {
                 bare.joints[joint].inertial = Some(body);
                 let torques = newton_euler::torques(&bare, &q, &qd, &qdd);
-                let mut felt = vec![0.0; driven.len()];
-                for (torque, &(driver, ratio, _)) in torques.iter().zip(&laws) {
-                    felt[driver] += ratio * torque;
-                }
-                columns[10 * link + index].extend(felt);
+                columns[10 * link + index].extend(coupling.felt(&torques));
             }
             bare.joints[joint].inertial = None;
         }
     }
     rank(columns)
+}
+
+/// How the moving joints follow the driven ones among them.
+struct Coupling {
+    /// Number of driven joints.
+    driven: usize,
+    /// By moving joint: the driven one, the ratio of the speeds, the position at its zero.
+    laws: Vec<(usize, f64, f64)>,
+}
+
+impl Coupling {
+    fn new(moving: &[usize], mimics: &[Mimic]) -> Coupling {
+        let follows = |joint: usize| mimics.iter().find(|mimic| mimic.joint == joint);
+        let driven = moving.iter().filter(|&&joint| follows(joint).is_none());
+        let driven: Vec<usize> = driven.copied().collect();
+        let law = |&joint: &usize| {
+            let (mut at, mut ratio, mut offset) = (joint, 1.0, 0.0);
+            while let Some(mimic) = follows(at) {
+                offset += ratio * mimic.offset;
+                (at, ratio) = (mimic.of, ratio * mimic.multiplier);
+            }
+            let driver = driven.iter().position(|&known| known == at);
+            (driver.unwrap(), ratio, offset)
+        };
+        Coupling {
+            laws: moving.iter().map(law).collect(),
+            driven: driven.len(),
+        }
+    }
+
+    fn positions(&self, driven: &[f64]) -> Vec<f64> {
+        let laws = self.laws.iter();
+        laws.map(|&(driver, ratio, offset)| ratio * driven[driver] + offset)
+            .collect()
+    }
+
+    fn rates(&self, driven: &[f64]) -> Vec<f64> {
+        let laws = self.laws.iter();
+        laws.map(|&(driver, ratio, _)| ratio * driven[driver])
+            .collect()
+    }
+
+    fn felt(&self, torques: &[f64]) -> Vec<f64> {
+        let mut felt = vec![0.0; self.driven];
+        for (torque, &(driver, ratio, _)) in torques.iter().zip(&self.laws) {
+            felt[driver] += ratio * torque;
+        }
+        felt
+    }
 }
 
 fn rank(columns: Vec<Vec<f64>>) -> usize {
