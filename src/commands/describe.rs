@@ -82,7 +82,7 @@ struct JointReport {
 #[derive(Debug, Serialize)]
 struct DetailReport {
     columns: Vec<String>,
-    /// The precision that it takes to tell them from the others.
+    /// How much smaller what tells them from the others is than for any other column.
     drop: f64,
 }
 
@@ -336,8 +336,8 @@ fn detail(out: &mut String, robot: &Robot) {
     };
     let _ = writeln!(
         out,
-        "\n  {} {stand} on a detail of the description: beside the others, {:.0e} times less is left\n  \
-         of {them} than of any other column, and a log has to be that precise to identify {them}.\n  \
+        "\n  {} {stand} on a detail of the description: what tells {them} from the others is {:.0e} times\n  \
+         smaller than for any other column, and a log has to be that precise to identify {them}.\n  \
          An axis that is almost parallel, a length that is almost zero, a loop that is almost a\n  \
          parallelogram, gravity that is almost along an axis? Make it exact, or do without {their}.",
         names.join(", "),
