@@ -233,8 +233,12 @@ impl<'a> Along<'a> {
                 &sensitivity.velocity[on],
                 &sensitivity.acceleration[on],
             );
-            (0..self.len())
-                .map(|i| a[i] * by.position[i] + b[i] * by.velocity[i] + c[i] * by.acceleration[i])
+            let position = a.iter().zip(&by.position);
+            let velocity = b.iter().zip(&by.velocity);
+            let acceleration = c.iter().zip(&by.acceleration);
+            let terms = position.zip(velocity).zip(acceleration);
+            terms
+                .map(|(((a, z), (b, zd)), (c, zdd))| a * z + b * zd + c * zdd)
                 .collect()
         };
         (0..self.effects.joints())

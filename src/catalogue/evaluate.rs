@@ -40,54 +40,54 @@ impl Motion<'_> {
     }
 
     /// One block of states, structure of arrays.
-    fn pack(&self, start: usize, len: usize) -> [Vec<f64>; 4] {
-        let gather = |series: &[Vec<f64>], moves: bool| -> Vec<f64> {
+    fn pack(&self, start: usize, len: usize, states: &mut [Vec<f64>; 4]) {
+        let block = start..start + len;
+        let [q, qd, qdd, slip] = states;
+        for (to, from, moves) in [
+            (&mut *q, self.q, true),
+            (&mut *qd, self.qd, !self.still),
+            (&mut *qdd, self.qdd, !self.still),
+        ] {
+            to.clear();
             match moves {
-                true => series
+                true => from
                     .iter()
-                    .flat_map(|series| &series[start..start + len])
-                    .copied()
-                    .collect(),
-                false => vec![0.0; series.len() * len],
+                    .for_each(|series| to.extend_from_slice(&series[block.clone()])),
+                false => to.resize(from.len() * len, 0.0),
             }
-        };
-        let mut q = gather(self.q, true);
-        let mut qd = gather(self.qd, !self.still);
-        let mut qdd = gather(self.qdd, !self.still);
+        }
+        slip.clear();
+        if let Some((joint, state)) = self.slip {
+            slip.resize(q.len(), 0.0);
+            slip[joint * len..(joint + 1) * len].copy_from_slice(&state[block]);
+        }
         let (series, joint, by) = match self.shift {
-            Some(Shift::Position(joint, by)) => (&mut q, joint, by),
-            Some(Shift::Velocity(joint, by)) => (&mut qd, joint, by),
-            Some(Shift::Acceleration(joint, by)) => (&mut qdd, joint, by),
-            None => (&mut q, 0, 0.0),
+            Some(Shift::Position(joint, by)) => (q, joint, by),
+            Some(Shift::Velocity(joint, by)) => (qd, joint, by),
+            Some(Shift::Acceleration(joint, by)) => (qdd, joint, by),
+            None => return,
         };
         series[joint * len..(joint + 1) * len]
             .iter_mut()
             .for_each(|x| *x += by);
-        let slip = match self.slip {
-            None => Vec::new(),
-            Some((joint, state)) => {
-                let mut slip = vec![0.0; q.len()];
-                slip[joint * len..(joint + 1) * len].copy_from_slice(&state[start..start + len]);
-                slip
-            }
-        };
-        [q, qd, qdd, slip]
     }
 
     /// Runs a tape along the motion; `each` gets the first sample, the number of samples and the
     /// outputs, output by output.
     fn run(&self, tape: &Tape, mut each: impl FnMut(usize, usize, &[f64])) {
         let mut out = Vec::new();
+        let mut states = <[Vec<f64>; 4]>::default();
         for start in (0..self.len()).step_by(BLOCK) {
             let len = BLOCK.min(self.len() - start);
-            let [q, qd, qdd, slip] = self.pack(start, len);
+            self.pack(start, len, &mut states);
+            let [q, qd, qdd, slip] = &states;
             out.resize(tape.outputs() * len, 0.0);
             let batch = Batch {
                 len,
-                q: &q,
-                qd: &qd,
-                qdd: &qdd,
-                slip: &slip,
+                q,
+                qd,
+                qdd,
+                slip,
             };
             tape.run(&batch, &mut out);
             each(start, len, &out);

@@ -1,6 +1,8 @@
 //! The null model: the parameters that the robot's description asks for, refitted where the log
 //! decides and held by the description's tolerances where it does not.
 
+use rayon::prelude::*;
+
 use super::generic;
 use super::joined::Joined;
 use super::likelihood::{self, left};
@@ -108,7 +110,7 @@ pub(super) fn null(
             let predicted = instruments.predict(model, &parameters);
             generic = generic_columns(model, instruments, &predicted);
         }
-        for (joint, noise) in noise.iter_mut().enumerate() {
+        noise.par_iter_mut().enumerate().for_each(|(joint, noise)| {
             let y = joined.measured(joint);
             let residual: Vec<f64> = y
                 .iter()
@@ -131,7 +133,7 @@ pub(super) fn null(
                 of_rows(&left, &error.weights, &joined.segments, 1.0)
             };
             *noise = found.credible(&y);
-        }
+        });
         system = fit(model, (joined, instruments), &noise, prior);
     }
     let whiten = |(joint, columns): (usize, Vec<Vec<f64>>)| -> Vec<Sparse> {
@@ -168,7 +170,8 @@ pub(super) fn fit(
         column
     };
     let pair = |k: usize| (column(joined, k), column(instruments, k));
-    let mut pairs: Vec<Pair> = (0..model.columns().len()).map(pair).collect();
+    let columns = (0..model.columns().len()).into_par_iter();
+    let mut pairs: Vec<Pair> = columns.map(pair).collect();
     // Nobody's parameters: what joints that stick at their reversals do.
     let pulses = joined.reversals().into_iter().zip(instruments.reversals());
     for (joint, (own, beside)) in pulses.enumerate() {
@@ -214,7 +217,8 @@ fn generic_columns(
         all.push(pulses[joint].clone());
         all
     };
-    model.joints().iter().enumerate().map(of_joint).collect()
+    let joints = model.joints().par_iter().enumerate();
+    joints.map(of_joint).collect()
 }
 
 /// Puts the columns of another log below those so far.

@@ -1,5 +1,7 @@
 //! Is there anything, is there still anything, and where.
 
+use rayon::prelude::*;
+
 use super::generic;
 use super::noise::{ORDER, effective};
 use super::null::Null;
@@ -45,7 +47,7 @@ const MENTIONED: f64 = 0.15;
 
 /// Lack of fit of each joint.
 pub(super) fn lacks(bench: &Bench<'_>, null: &Null, state: &State) -> Vec<Lack> {
-    let joints = 0..bench.train.joints();
+    let joints = (0..bench.train.joints()).into_par_iter();
     if null.repeats.is_empty() {
         return joints
             .map(|joint| against_generic(&null.generic[joint], bench, state, joint))
@@ -161,7 +163,8 @@ pub(super) fn located(
     lacks: &[Lack],
     state: &State,
 ) -> Vec<(usize, f64, Vec<&'static str>)> {
-    let lacking = lacks.iter().enumerate().filter(|(_, lack)| is_open(lack));
+    let lacking = lacks.par_iter().enumerate();
+    let lacking = lacking.filter(|(_, lack)| is_open(lack));
     lacking
         .map(|(joint, lack)| {
             let share = lack.excess / (1.0 + lack.excess);
