@@ -2,7 +2,7 @@
 
 use super::catalogue::EntryKind;
 use super::joined::Joined;
-use super::nominal;
+use super::lasting;
 use super::screen::Contender;
 use super::state::State;
 use super::stepwise::{Named, Stepwise};
@@ -64,14 +64,6 @@ impl Broken {
     }
 }
 
-/// Sum of the squared torque errors of a joint over the rows that count.
-pub(super) fn error(joined: &Joined, joint: usize, predicted: &[Vec<f64>]) -> f64 {
-    let measured = joined.measured(joint);
-    let pairs = measured.iter().zip(&predicted[joint]);
-    let weighted = joined.weights[joint].iter().zip(pairs);
-    weighted.map(|(w, (y, p))| w * (y - p).powi(2)).sum()
-}
-
 /// Whether a change of the predicted rows does on another motion what it should: `change` is its
 /// product with the residual before, and its square.
 fn kept(
@@ -86,7 +78,7 @@ fn kept(
         return Err(Broken::Promise { gained, promised });
     }
     let error = |rows: &[Vec<f64>]| -> f64 {
-        let of_joint = |&joint: &usize| self::error(confirm, joint, rows);
+        let of_joint = |&joint: &usize| confirm.square_error(joint, rows);
         joints.iter().map(of_joint).sum::<f64>().sqrt()
     };
     // The plain error has slow noise in it, which whitening takes away: it is asked strictly where
@@ -226,12 +218,12 @@ impl Stepwise<'_> {
         let [before, after] = [state, next].map(|state| self.bench.rows(state, train));
         let joints = contender.candidate.columns.iter().flat_map(|c| c.0.iter());
         let gain = |&(joint, _): &(usize, Vec<f64>)| {
-            let errors = [&before, &after].map(|rows| error(train, joint, rows));
+            let errors = [&before, &after].map(|rows| train.square_error(joint, rows));
             1.0 - (errors[1] / errors[0]).sqrt()
         };
         let gain = joints.map(gain).fold(f64::NEG_INFINITY, f64::max);
         let mut wide = next.clone();
-        nominal::widen(&mut wide, train);
+        lasting::widen(&mut wide, train);
         let clear = wide.effects.last().is_some_and(|effect| {
             let mut pairs = effect.values.iter().zip(&effect.sigmas);
             pairs.any(|(value, sigma)| sigma.is_some_and(|sigma| value.abs() > CLEAR * sigma))

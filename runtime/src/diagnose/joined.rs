@@ -110,6 +110,14 @@ impl Joined {
         all
     }
 
+    /// Sum of the squared torque errors of a joint over the rows that count.
+    pub fn square_error(&self, joint: usize, predicted: &[Vec<f64>]) -> f64 {
+        let measured = self.measured(joint);
+        let pairs = measured.iter().zip(&predicted[joint]);
+        let weighted = self.weights[joint].iter().zip(pairs);
+        weighted.map(|(w, (y, p))| w * (y - p).powi(2)).sum()
+    }
+
     /// \\( W X \\) of each joint.
     pub fn product(&self, parameters: &[f64]) -> Vec<Vec<f64>> {
         let of_joint = |joint: usize| {

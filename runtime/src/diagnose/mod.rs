@@ -17,6 +17,7 @@ mod doubts;
 mod generic;
 mod instruments;
 mod joined;
+mod lasting;
 mod likelihood;
 mod linear;
 pub(crate) mod noise;
@@ -222,7 +223,7 @@ fn searched(
     let search = Stepwise::new(bench, confirm, &before);
     let mut outcome = search.run(before.clone());
     if known.is_some() {
-        nominal::widen(&mut outcome.state, joined);
+        lasting::widen(&mut outcome.state, joined);
     }
     progress.step("proving what was found");
     let predictions = other

@@ -3,13 +3,11 @@
 
 use std::ops::Range;
 
-use super::confirm::error;
 use super::contact::{self, Window};
 use super::joined::Joined;
 use super::likelihood;
 use super::linear::add_scaled;
 use super::null::{Null, Prior, fit, parameters, unknown_noise};
-use super::state::State;
 use super::system::Sparse;
 use super::track::Track;
 use super::{Catalogue, DiagnoseError, Log, Options, Prediction, Searched, Tracked};
@@ -40,10 +38,6 @@ const ROWS_PER_COLUMN: usize = 2;
 
 /// Rows without which not even contact is looked for.
 const FEWEST: usize = 40;
-
-/// Length of the blocks whose errors are independent of each other, s; and the fewest of them.
-const BLOCK_S: f64 = 2.0;
-const BLOCKS: usize = 12;
 
 /// Torque error of a joint from which something is open, times that of the same model with all its
 /// parameters free.
@@ -247,7 +241,7 @@ fn open(
     let before = train.product(nominal.values);
     let errors = |joint: usize| {
         let rows = [&before, &searched.rows.0, &free];
-        let [before, after, free] = rows.map(|rows| error(train, joint, rows));
+        let [before, after, free] = rows.map(|rows| train.square_error(joint, rows));
         // What so many free parameters take away by chance.
         let counted = train.weights[joint].iter().filter(|w| **w > 0.0).count() as f64;
         let left = 1.0 - system.leverage(joint) / counted.max(1.0);
@@ -269,32 +263,6 @@ fn open(
         }
     };
     (0..train.joints()).filter(is_open).map(located).collect()
-}
-
-/// Error bars that hold beside an error of the model that lasts: it is independent only from block to
-/// block.
-pub(super) fn widen(state: &mut State, joined: &Joined) {
-    let step = joined.tracks.first().map_or(1.0, Track::step);
-    let rows = joined.rows();
-    let len = ((BLOCK_S / step) as usize).min(rows / BLOCKS).max(1);
-    let inside = |segment: &Range<usize>| {
-        let end = segment.end;
-        let starts = segment.clone().step_by(len);
-        starts
-            .map(move |start| start..(start + len).min(end))
-            .collect::<Vec<_>>()
-    };
-    let blocks: Vec<Range<usize>> = joined.segments.iter().flat_map(inside).collect();
-    let count = state.effects.iter().map(|effect| effect.values.len()).sum();
-    let mut wide = state.system.block_sigmas(count, &blocks).into_iter();
-    for sigma in state
-        .effects
-        .iter_mut()
-        .flat_map(|effect| &mut effect.sigmas)
-    {
-        let wide = wide.next().flatten();
-        *sigma = sigma.map(|own| own.max(wide.unwrap_or(0.0)));
-    }
 }
 
 fn check_length(whole: &Tracked<'_>) -> Result<(), DiagnoseError> {
