@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::catalogue::{ColumnsAlong, Hypothesis, Signals};
+use super::catalogue::{ColumnsAlong, Hypothesis, Signals, TorqueColumn};
 use super::rest::Rested;
 use super::still::{dead_band, reversals, weights};
 use super::thin::Thin;
@@ -21,10 +21,6 @@ use crate::signal::Decimator;
 /// share of a log that is spared for it at most.
 const RINGING: usize = 6;
 const SPARED: f64 = 0.05;
-
-/// Shapes whose columns are decimated together: enough to fill vectors, few enough that their
-/// series at the full rate do not crowd each other out of the cache.
-const TOGETHER: usize = 8;
 
 /// Torque of an effect along a log, decimated.
 #[derive(Clone, Debug)]
@@ -269,20 +265,13 @@ impl Track {
         hypothesis: &Hypothesis,
         shapes: &[Vec<f64>],
     ) -> Vec<Vec<Decimated>> {
-        let some = shapes.par_chunks(TOGETHER);
-        some.flat_map_iter(|shapes| self.columns_of(along, hypothesis, shapes))
-            .collect()
-    }
-
-    fn columns_of(
-        &self,
-        along: &ColumnsAlong<'_>,
-        hypothesis: &Hypothesis,
-        shapes: &[Vec<f64>],
-    ) -> Vec<Vec<Decimated>> {
+        let made: Vec<Vec<TorqueColumn>> = shapes
+            .par_iter()
+            .map(|shape| along(hypothesis, shape))
+            .collect();
         let mut series = Vec::new();
         let mut layout = Vec::new();
-        for columns in shapes.iter().map(|shape| along(hypothesis, shape)) {
+        for columns in made {
             let mut names = Vec::new();
             for column in columns {
                 let joints: Vec<usize> = column.torque.iter().map(|(joint, _)| *joint).collect();

@@ -37,10 +37,10 @@ pub(crate) struct Course<'a> {
 }
 
 impl<'a> Course<'a> {
-    /// Finds the joints that rest.
+    /// Finds the joints that rest. Samples are checked where they are filtered.
     ///
     /// # Errors
-    /// Those of [`Motion::trimmed`] and [`check_torque`]; [`ObserveError::Unreadable`].
+    /// Those of [`Motion::trimmed`]; [`ObserveError::Unreadable`].
     pub fn new(
         source: &'a dyn Samples,
         model: &'a dyn IdentificationModel,
@@ -119,7 +119,8 @@ impl<'a> Course<'a> {
     /// The motion at some samples, counted in the whole log.
     ///
     /// # Errors
-    /// [`ObserveError::Unreadable`]; [`ObserveError::NoVelocity`]; [`ObserveError::Filter`].
+    /// Those of [`check`] and [`check_torque`]; [`ObserveError::Unreadable`];
+    /// [`ObserveError::NoVelocity`]; [`ObserveError::Filter`].
     pub fn motion(&self, range: Range<usize>) -> Result<Motion, ObserveError> {
         if self.slips.is_empty() {
             return self.filtered(range);
