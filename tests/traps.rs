@@ -129,6 +129,26 @@ fn what_improves_the_training_log_alone_is_rejected_and_says_why() {
     );
 }
 
+/// A spring on a crank pulls at the elbow: over the elbow's short way it is a ripple or a spring to
+/// within the noise, and neither would hold beyond it.
+#[test]
+fn a_ripple_that_has_not_repeated_is_a_hint() {
+    let crank = |joint: usize, course: &Course| match joint {
+        1 => course.map(|q, _| {
+            let (sin, cos) = (q - 0.3).sin_cos();
+            let length = (1.0 + 0.75 * 0.75 - 1.5 * cos).sqrt();
+            6.0 * (1.0 - 0.55 / length) * sin
+        }),
+        _ => nothing(joint, course),
+    };
+    let found = said(&[TRAIN.log(&crank)], &[VALID.log(&crank)]).unwrap();
+    let names = names(&found);
+    assert_eq!(found.verdict, Verdict::Unknown, "{names:?}");
+    assert!(names.contains(&("torque_ripple", &[2])), "{names:?}");
+    let told = |w: &String| w.contains("periods of the torque_ripple of joint `elbow`");
+    assert!(found.warnings.iter().any(told), "{:?}", found.warnings);
+}
+
 #[test]
 fn a_standstill_makes_no_friction_effect() {
     // A joint at rest is held by any torque below its Coulomb friction.

@@ -232,6 +232,12 @@ impl Catalogue for Effects {
         Box::new(move |hypothesis, shape| along.columns(hypothesis, shape))
     }
 
+    fn repeats_per_turn(&self, hypothesis: &Hypothesis, shape: &[f64]) -> Option<f64> {
+        let effect = CATALOGUE.get(hypothesis.entry)?;
+        let repeats = effect.described == [EffectKind::TorqueRipple];
+        repeats.then(|| shape.first().copied()).flatten()
+    }
+
     fn implausible(
         &self,
         hypothesis: &Hypothesis,

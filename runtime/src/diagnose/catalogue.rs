@@ -119,6 +119,12 @@ pub trait Catalogue: Sync {
         Box::new(move |hypothesis, shape| self.columns(hypothesis, shape, &signals))
     }
 
+    /// How often the torque of a hypothesis repeats per turn of its joint, where that it repeats is
+    /// what its name says of it.
+    fn repeats_per_turn(&self, _hypothesis: &Hypothesis, _shape: &[f64]) -> Option<f64> {
+        None
+    }
+
     /// Whether parameter values of an effect are plausible (sign and size), and if not, why.
     fn implausible(&self, hypothesis: &Hypothesis, shape: &[f64], values: &[f64])
     -> Option<String>;

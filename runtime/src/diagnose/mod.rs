@@ -24,6 +24,7 @@ pub(crate) mod noise;
 mod nominal;
 mod null;
 mod options;
+mod periods;
 mod picture;
 mod proof;
 mod repeats;

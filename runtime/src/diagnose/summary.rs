@@ -7,6 +7,7 @@ use super::bursts;
 use super::catalogue::Hypothesis;
 use super::joined::Joined;
 use super::null::Null;
+use super::periods::unrepeated;
 use super::picture::{self, Drawn};
 use super::smooth::smooths;
 use super::state::{Bench, Effect, State};
@@ -44,10 +45,11 @@ pub(super) fn diagnosis(
         true => bursts::bursts(bench, before),
         false => Vec::new(),
     };
+    let unrepeated = unrepeated(bench, outcome);
     let verdict = match outcome.named.is_empty() {
         true if verdict::open(&lacks) || !bursts.is_empty() => Verdict::Unknown,
         true => Verdict::Nothing,
-        false if verdict::closed(&lacks, &left) => Verdict::Named,
+        false if verdict::closed(&lacks, &left) && unrepeated.is_empty() => Verdict::Named,
         false => Verdict::Unknown,
     };
     let mut located = verdict::located(bench, &lacks, before);
@@ -96,6 +98,7 @@ pub(super) fn diagnosis(
         warnings: [
             doubts::warnings(asked.logs, asked.kept),
             bursts.iter().map(|b| b.sentence(bench.model)).collect(),
+            unrepeated.iter().map(|u| u.sentence(bench.model)).collect(),
         ]
         .concat(),
         command: None,

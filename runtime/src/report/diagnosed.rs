@@ -46,7 +46,7 @@ fn sentence(diagnosis: &Diagnosis) -> &'static str {
         (Verdict::Named, _) => "effects are missing, and they explain the gap",
         (Verdict::Unknown, 0) => "something is missing that the catalogue does not know",
         (Verdict::Unknown, _) => {
-            "something is missing; what was found helps and does not explain the gap"
+            "something is missing; what was found is a hint and does not settle what it is"
         }
     }
 }

@@ -79,7 +79,7 @@ fn sentence(diagnosis: &Diagnosis) -> String {
              Below is where it is and what it varies with."
             .to_owned(),
         (Verdict::Unknown, false) => format!(
-            "Something is missing. {} helps ({before} to {after}) and does not explain the gap: \
+            "Something is missing. {} helps ({before} to {after}) and does not settle what it is: \
              take the name for a hint, not for the cause.",
             names(diagnosis)
         ),
