@@ -115,7 +115,7 @@ fn compile(robot: &Robot, signals: &Signals) -> Compiled {
             entries: Cow::Owned(entries),
             signals: signals.values.len(),
         },
-        tape: Tape::new(&robot.graph, &signals.values),
+        tape: Tape::among(&robot.graph, &signals.values, &signals.others),
     }
 }
 

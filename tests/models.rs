@@ -12,7 +12,7 @@ use std::ops::{Add, Mul, Neg, Sub};
 use idim::codegen::builder;
 use idim::interpreted::Interpreter;
 use idim::robots;
-use idim::runtime::lane::Lane;
+use idim::runtime::lane::{Lane, Product};
 use idim::runtime::model::{Entry, IdentificationModel, Output, States};
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::Rng;
@@ -67,6 +67,18 @@ impl Neg for Dual {
             value: -self.value,
             rate: -self.rate,
         }
+    }
+}
+impl Add<Product<Dual>> for Dual {
+    type Output = Dual;
+    fn add(self, product: Product<Dual>) -> Dual {
+        product + self
+    }
+}
+impl Sub<Product<Dual>> for Dual {
+    type Output = Dual;
+    fn sub(self, product: Product<Dual>) -> Dual {
+        -(product - self)
     }
 }
 impl Lane for Dual {

@@ -137,7 +137,7 @@ fn states(robot: &Robot) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// All outputs of the interpreter, sample by sample, in the order of the functions, row by row.
+/// All outputs of the interpreter, rounded like C and Python, sample by sample, in the order of the functions, row by row.
 fn interpreted(robot: &Robot, states: &[Vec<f64>]) -> Vec<Vec<Vec<f64>>> {
     let (n, nb) = (robot.mechanism.driven, robot.base.parameters.len());
     let values = |values: &[Expr], state: &[f64]| {
@@ -149,7 +149,7 @@ fn interpreted(robot: &Robot, states: &[Vec<f64>]) -> Vec<Vec<Vec<f64>>> {
             qdd: &state[2 * n..3 * n],
             slip: &state[3 * n..4 * n],
         };
-        let tape = Tape::new(&robot.graph, values).with_parameters(&state[4 * n..]);
+        let tape = Tape::plain(&robot.graph, values).with_parameters(&state[4 * n..]);
         tape.run(&batch, &mut out);
         out
     };

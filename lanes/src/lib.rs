@@ -4,23 +4,68 @@
 //! machine that a program is compiled for, and [`Vector`], whose width is that of the machine that
 //! runs it. The functions need nothing but the trait [`Lane`]: no allocation, no other dependency.
 
-pub mod sine;
+mod joints;
+mod product;
+mod sine;
 mod vector;
 
 use core::ops::{Add, Mul, Neg, Sub};
 
+pub use product::Product;
 pub use pulp::{Arch, Simd, WithSimd};
 pub use vector::Vector;
 pub use wide::{f64x4, f64x8};
 
+/// Whether the machine that the program is compiled for multiplies and adds in one instruction; on
+/// others that would be a slow call.
+const FUSES: bool = cfg!(any(target_feature = "fma", target_arch = "aarch64"));
+
 /// A number, or several numbers side by side on which each operation acts alike.
 pub trait Lane:
-    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Neg<Output = Self>
+    Copy
+    + Add<Output = Self>
+    + Add<Product<Self>, Output = Self>
+    + Sub<Output = Self>
+    + Sub<Product<Self>, Output = Self>
+    + Mul<Output = Self>
+    + Neg<Output = Self>
 {
     /// The same constant in every lane; `self` only says what lanes they are.
     fn splat(self, value: f64) -> Self;
+    /// `self * factor + term`, rounded once where that is one instruction, else twice.
+    #[inline(always)]
+    fn fused(self, factor: Self, term: Self) -> Self {
+        self * factor + term
+    }
+    /// A product that the sum it enters rounds: `a + b.times(c)` is [`Lane::fused`].
+    #[inline(always)]
+    fn times(self, factor: Self) -> Product<Self> {
+        Product::new(self, factor)
+    }
     /// Sine and cosine; argument in rad.
     fn sin_cos(self) -> (Self, Self);
+    /// Sine and cosine of each of up to four angles, rad: those of one sample are computed side by
+    /// side.
+    #[inline(always)]
+    fn sines_and_cosines<const N: usize>(angles: [Self; N]) -> [(Self, Self); N] {
+        const { assert!(N <= 4) };
+        let mut pairs = angles.map(|angle| (angle, angle));
+        // No closure: only what is always inlined has the instructions of its caller. No loop: it
+        // would keep the pairs in memory.
+        if N > 0 {
+            pairs[0] = angles[0].sin_cos();
+        }
+        if N > 1 {
+            pairs[1] = angles[1].sin_cos();
+        }
+        if N > 2 {
+            pairs[2] = angles[2].sin_cos();
+        }
+        if N > 3 {
+            pairs[3] = angles[3].sin_cos();
+        }
+        pairs
+    }
     /// -1, 0 or 1: the sign, zero at zero.
     fn sign(self) -> Self;
     /// Absolute value.
@@ -50,16 +95,24 @@ pub trait Part<A> {
 }
 
 macro_rules! scalar {
-    ($t:ty) => {
+    ($t:ty $(, $sines:item)?) => {
         impl Lane for $t {
             #[inline(always)]
             fn splat(self, value: f64) -> Self {
                 value as $t
             }
+            #[inline(always)]
+            fn fused(self, factor: Self, term: Self) -> Self {
+                match FUSES {
+                    true => self.mul_add(factor, term),
+                    false => self * factor + term,
+                }
+            }
             #[inline]
             fn sin_cos(self) -> (Self, Self) {
                 <$t>::sin_cos(self)
             }
+            $($sines)?
             #[inline]
             fn sign(self) -> Self {
                 if self > 0.0 {
@@ -104,7 +157,13 @@ macro_rules! scalar {
 }
 
 scalar!(f32);
-scalar!(f64);
+scalar!(
+    f64,
+    #[inline(always)]
+    fn sines_and_cosines<const N: usize>(angles: [Self; N]) -> [(Self, Self); N] {
+        joints::sines_and_cosines(angles)
+    }
+);
 
 macro_rules! wide {
     ($t:ty) => {
@@ -112,6 +171,10 @@ macro_rules! wide {
             #[inline(always)]
             fn splat(self, value: f64) -> Self {
                 <$t>::splat(value)
+            }
+            #[inline(always)]
+            fn fused(self, factor: Self, term: Self) -> Self {
+                self.mul_add(factor, term)
             }
             #[inline]
             fn sin_cos(self) -> (Self, Self) {
@@ -189,6 +252,32 @@ mod tests {
         assert_eq!(values(sum), one_by_one(|x| x * 3.0 - x * x + x));
     }
 
+    /// Rounded once or twice, a sum is exact where its product is; the signs are those of the sum.
+    fn fuse<T: Lane>(lanes: T, samples: &[f64], values: impl Fn(T) -> Vec<f64>) {
+        let (two, five) = (lanes.splat(2.0), lanes.splat(5.0));
+        let one_by_one = |f: fn(f64) -> f64| samples.iter().map(|&x| f(x)).collect::<Vec<_>>();
+        assert_eq!(
+            values(lanes.fused(two, five)),
+            one_by_one(|x| x * 2.0 + 5.0)
+        );
+        assert_eq!(
+            values(lanes.times(two) + five),
+            one_by_one(|x| x * 2.0 + 5.0)
+        );
+        assert_eq!(
+            values(lanes.times(two) - five),
+            one_by_one(|x| x * 2.0 - 5.0)
+        );
+        assert_eq!(
+            values(five + lanes.times(two)),
+            one_by_one(|x| 5.0 + x * 2.0)
+        );
+        assert_eq!(
+            values(five - lanes.times(two)),
+            one_by_one(|x| 5.0 - x * 2.0)
+        );
+    }
+
     struct Everywhere;
 
     impl WithSimd for Everywhere {
@@ -197,6 +286,15 @@ mod tests {
             for samples in samples().chunks(S::F64_LANES) {
                 let lanes = Vector::from_slice(simd, samples);
                 agree(lanes, samples, |x| x.values()[..samples.len()].to_vec());
+                fuse(lanes, samples, |x| x.values()[..samples.len()].to_vec());
+                let square = |x: f64| Vector::splat(simd, x).times(Vector::splat(simd, x));
+                let (near, rest) = (
+                    1.0 + f64::EPSILON,
+                    Vector::splat(simd, 1.0 + 2.0 * f64::EPSILON),
+                );
+                let left = (square(near) - rest).values()[0];
+                assert_eq!(left != 0.0, Vector::<S>::FUSES, "{left:e}");
+                assert_eq!(left, Vector::<S>::fuse(near, near, -rest.values()[0]));
             }
         }
     }
@@ -206,8 +304,12 @@ mod tests {
         for samples in samples().chunks_exact(8) {
             let lanes: [f64; 8] = std::array::from_fn(|i| samples[i]);
             agree(f64x8::from(lanes), samples, |x| x.to_array().to_vec());
+            fuse(f64x8::from(lanes), samples, |x| x.to_array().to_vec());
             let lanes: [f64; 4] = std::array::from_fn(|i| samples[i]);
             agree(f64x4::from(lanes), &samples[..4], |x| x.to_array().to_vec());
+            fuse(f64x4::from(lanes), &samples[..4], |x| x.to_array().to_vec());
+            fuse(samples[0], &samples[..1], |x| vec![x]);
+            fuse(1.5_f32, &[1.5], |x| vec![f64::from(x)]);
         }
         Arch::new().dispatch(Everywhere);
         Everywhere.with_simd(Scalar);

@@ -5,7 +5,8 @@ use std::ops::{Add, Mul, Neg, Sub};
 use bytemuck::{cast_slice, cast_slice_mut};
 use pulp::{Simd, WithSimd};
 
-use crate::{Lane, Part, sine};
+use crate::sine::{self, Turn};
+use crate::{FUSES, Lane, Part};
 
 /// `S::F64_LANES` numbers in a vector of the instructions `S`: 8 with AVX-512, 4 with AVX2, 2 with
 /// NEON, else 1.
@@ -20,6 +21,20 @@ pub struct Vector<S: Simd> {
 }
 
 impl<S: Simd> Vector<S> {
+    /// Whether the instructions multiply and add with one rounding: all vectors of x86 that
+    /// [`pulp::Arch`] knows do, and NEON.
+    pub const FUSES: bool =
+        FUSES || (S::F64_LANES > 1 && cfg!(any(target_arch = "x86_64", target_arch = "x86")));
+
+    /// [`Lane::fused`] of single numbers, with the rounding of these lanes.
+    #[inline(always)]
+    pub fn fuse(a: f64, b: f64, c: f64) -> f64 {
+        match Self::FUSES {
+            true => a.mul_add(b, c),
+            false => a * b + c,
+        }
+    }
+
     /// The same number in every lane.
     #[inline(always)]
     pub fn splat(simd: S, value: f64) -> Self {
@@ -61,10 +76,13 @@ impl<S: Simd> Vector<S> {
         lanes.iter_mut().for_each(|x| *x = f(*x));
         self
     }
+}
 
+impl<S: Simd> Turn for Vector<S> {
+    type Mask = S::m64s;
     /// Where the number as stored has all these bits.
     #[inline(always)]
-    pub(crate) fn has_bit(self, bit: u64) -> S::m64s {
+    fn has_bit(self, bit: u64) -> S::m64s {
         let bit = self.simd.splat_u64s(bit);
         let bits = self.simd.transmute_u64s_f64s(self.values);
         self.simd.equal_u64s(self.simd.and_u64s(bits, bit), bit)
@@ -72,7 +90,7 @@ impl<S: Simd> Vector<S> {
 
     /// These numbers where the mask is set, else the others.
     #[inline(always)]
-    pub(crate) fn where_else(self, mask: S::m64s, other: Self) -> Self {
+    fn where_else(self, mask: S::m64s, other: Self) -> Self {
         self.with(self.simd.select_f64s(mask, self.values, other.values))
     }
 }
@@ -113,6 +131,13 @@ impl<S: Simd> Lane for Vector<S> {
     #[inline(always)]
     fn splat(self, value: f64) -> Self {
         Vector::splat(self.simd, value)
+    }
+    #[inline(always)]
+    fn fused(self, factor: Self, term: Self) -> Self {
+        match Self::FUSES {
+            true => self.with((self.simd).mul_add_f64s(self.values, factor.values, term.values)),
+            false => self * factor + term,
+        }
     }
     #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {

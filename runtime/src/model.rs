@@ -13,7 +13,7 @@ use crate::settings::Settings;
 
 /// Version of the contract between emitted code and this crate; emitted code refuses to compile
 /// against another one.
-pub const ABI: u32 = 2;
+pub const ABI: u32 = 3;
 
 /// How a joint moves. Angles are rad, displacements m.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]

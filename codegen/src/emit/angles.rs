@@ -67,11 +67,6 @@ impl Trig {
         text
     }
 
-    /// Whether it is the position of one joint.
-    pub fn is_plain(&self) -> bool {
-        matches!(self.angle.terms[..], [(_, 1.0)]) && self.angle.offset.is_zero()
-    }
-
     /// The angle as a person writes it, such as `q2 + q3 + pi/2`.
     pub fn text(&self) -> String {
         let mut text = String::new();

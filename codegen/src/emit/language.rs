@@ -16,6 +16,15 @@ pub trait Language {
     /// A function of an operand: `bare` as it is, `factor` in parentheses where a product or a
     /// method needs them.
     fn call(&self, function: Function, bare: &str, factor: &str) -> String;
+    /// Whether a product is spelled as [`times`](Language::times) where the sum that it enters rounds
+    /// it; other languages leave that to their compilers.
+    fn fuses(&self) -> bool {
+        false
+    }
+    /// A product that the sum it enters rounds: `first` has parentheses around a sum, `second` none.
+    fn times(&self, first: &str, second: &str) -> String {
+        format!("{first} * ({second})")
+    }
     /// Whether a function computes the sines and cosines that it needs; otherwise the state has
     /// them.
     fn computes_trig(&self) -> bool;

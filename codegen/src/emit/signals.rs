@@ -15,6 +15,8 @@ pub struct Signals {
     pub first: Vec<(usize, usize)>,
     /// The value of each signal.
     pub values: Vec<Expr>,
+    /// What emitted code computes in the same function besides.
+    pub others: Vec<Expr>,
 }
 
 /// Finds equal entries.
@@ -29,5 +31,11 @@ pub fn signals(robot: &Robot, output: Output) -> Signals {
         });
         signals.entries.push((entry.row, entry.column, signal));
     }
+    let others = match output {
+        Output::Momentum => robot.entries(Output::Rest),
+        Output::Rest => robot.entries(Output::Momentum),
+        Output::Explicit | Output::Energy | Output::Power => vec![],
+    };
+    signals.others = others.into_iter().map(|entry| entry.value).collect();
     signals
 }

@@ -6,7 +6,7 @@ use std::mem::take;
 use super::function::{Line, Statement};
 use super::language::Language;
 use super::naming::Names;
-use crate::expr::{Expr, Graph, Input, Node, schedule};
+use crate::expr::{Expr, Graph, Input, Node, fusion, schedule};
 
 /// Operations in one expression beyond which a value gets a name of its own.
 const LONG: usize = 5;
@@ -24,6 +24,8 @@ pub struct Writer<'a> {
     graph: &'a Graph,
     language: &'a dyn Language,
     named: HashSet<usize>,
+    /// Products that the sum they enter rounds.
+    fused: Vec<bool>,
     names: Names,
     /// Since the last statement: what was read, and the operations that were written.
     reads: Vec<usize>,
@@ -34,29 +36,15 @@ impl<'a> Writer<'a> {
     /// Decides for a set of outputs: what is used once and is short stands where it is used.
     pub fn new(graph: &'a Graph, outputs: &[Expr], language: &'a dyn Language) -> Writer<'a> {
         let uses = schedule::uses(graph, outputs);
-        let mut named = HashSet::new();
-        let mut size = vec![0usize; graph.nodes().len()];
-        for index in 0..graph.nodes().len() {
-            if uses[index] == 0 {
-                continue;
-            }
-            let node = graph.nodes()[index];
-            let inner: usize = schedule::operands(node).map(|x| size[x.node()]).sum();
-            let operation = matches!(
-                node,
-                Node::Add(..) | Node::Sub(..) | Node::Mul(..) | Node::Call(..)
-            );
-            size[index] = inner + usize::from(operation);
-            let shared = operation && uses[index] > 1;
-            if shared || size[index] >= LONG {
-                named.insert(index);
-                size[index] = 0;
-            }
-        }
+        let fused = match language.fuses() {
+            true => fusion::fused(graph, &uses),
+            false => vec![false; uses.len()],
+        };
         Writer {
             graph,
             language,
-            named,
+            named: named(graph, &uses, &fused),
+            fused,
             names: Names::new(graph, language.reserved()),
             reads: vec![],
             operations: 0,
@@ -142,10 +130,7 @@ impl<'a> Writer<'a> {
                 (format!("{a} + {}", self.term(b)), Level::Sum)
             }
             Node::Sub(a, b) => self.difference(a, b),
-            Node::Mul(a, b) => {
-                let (a, b) = (self.factor(a), self.factor(b));
-                (format!("{a} * {b}"), Level::Product)
-            }
+            Node::Mul(a, b) => (self.product(node, a, b), Level::Product),
             Node::Call(function, a) => {
                 let (bare, factor) = (self.signed(a).0, self.factor(a));
                 (self.language.call(function, &bare, &factor), Level::Atom)
@@ -154,6 +139,15 @@ impl<'a> Writer<'a> {
                 self.reference(node)
             }
         }
+    }
+
+    fn product(&mut self, node: usize, a: Expr, b: Expr) -> String {
+        let first = self.factor(a);
+        if self.fused[node] {
+            let second = self.signed(b).0;
+            return self.language.times(&first, &second);
+        }
+        format!("{first} * {}", self.factor(b))
     }
 
     fn difference(&mut self, a: Expr, b: Expr) -> (String, Level) {
@@ -180,4 +174,31 @@ impl<'a> Writer<'a> {
             _ => inner,
         }
     }
+}
+
+/// The nodes with a name of their own.
+fn named(graph: &Graph, uses: &[usize], fused: &[bool]) -> HashSet<usize> {
+    let mut named = HashSet::new();
+    let mut size = vec![0usize; graph.nodes().len()];
+    for (index, &node) in graph.nodes().iter().enumerate() {
+        if uses[index] == 0 {
+            continue;
+        }
+        let inner: usize = schedule::operands(node).map(|x| size[x.node()]).sum();
+        let operation = matches!(
+            node,
+            Node::Add(..) | Node::Sub(..) | Node::Mul(..) | Node::Call(..)
+        );
+        size[index] = inner + usize::from(operation);
+        let shared = operation && uses[index] > 1;
+        if !shared && size[index] < LONG {
+            continue;
+        }
+        // A product that its sum rounds stands there: its longer factor gets a name instead.
+        let longer = schedule::operands(node).max_by_key(|x| size[x.node()]);
+        let longer = longer.filter(|_| fused[index]).map(Expr::node);
+        named.insert(longer.unwrap_or(index));
+        size[index] -= longer.map_or(size[index], |factor| take(&mut size[factor]));
+    }
+    named
 }

@@ -7,6 +7,7 @@
 pub mod angle;
 pub mod count;
 pub mod derivative;
+pub mod fusion;
 pub mod graph;
 pub mod needs;
 pub mod residue;

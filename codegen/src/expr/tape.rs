@@ -3,7 +3,7 @@
 //! A tape computes a set of outputs for many states at once. Values of [`WIDTH`] states live side
 //! by side in a register; registers are reused as soon as their last reader is done, so the
 //! working set stays in cache. Sines and cosines are those of the lanes that emitted code runs on,
-//! and every operation is grouped as there: both readers of the graph give the same bits.
+//! and every operation is grouped and fused as there: both readers of the graph give the same bits.
 
 mod assembler;
 mod run;
@@ -12,8 +12,9 @@ use std::cell::RefCell;
 
 use idim_lanes::Arch;
 
+use super::fusion::fused;
 use super::graph::{Expr, Function, Graph, Input};
-use super::schedule::order;
+use super::schedule::{order, uses};
 use assembler::Assembler;
 use run::{Register, Run};
 
@@ -34,11 +35,11 @@ enum Op {
     Add(usize, usize),
     Sub(usize, usize),
     Mul(usize, usize),
-    /// `a * b + c`, rounded twice.
+    /// `a * b + c`.
     MulAdd(usize, usize, usize),
-    /// `a * b - c`, rounded twice.
+    /// `a * b - c`.
     MulSub(usize, usize, usize),
-    /// `c - a * b`, rounded twice.
+    /// `c - a * b`.
     SubMul(usize, usize, usize),
     Call(Function, usize),
     /// Stores the target register.
@@ -101,7 +102,24 @@ pub struct Batch<'a> {
 impl Tape {
     /// Compiles the outputs in the order given.
     pub fn new(graph: &Graph, outputs: &[Expr]) -> Tape {
-        let mut assembler = Assembler::new(graph, outputs);
+        Tape::among(graph, outputs, &[])
+    }
+
+    /// The same with each operation rounded by itself, as emitted C and Python say it.
+    pub fn plain(graph: &Graph, outputs: &[Expr]) -> Tape {
+        let apart = vec![false; graph.nodes().len()];
+        Tape::assembled(graph, outputs, apart)
+    }
+
+    /// The same, rounded as in a function that computes other outputs besides: a product that these
+    /// use, too, is rounded by itself.
+    pub fn among(graph: &Graph, outputs: &[Expr], others: &[Expr]) -> Tape {
+        let uses = uses(graph, &[outputs, others].concat());
+        Tape::assembled(graph, outputs, fused(graph, &uses))
+    }
+
+    fn assembled(graph: &Graph, outputs: &[Expr], fused: Vec<bool>) -> Tape {
+        let mut assembler = Assembler::new(graph, outputs, fused);
         for index in order(graph, outputs) {
             assembler.compute(index);
         }
@@ -132,8 +150,8 @@ impl Tape {
 
     /// Runs the tape: output `k` at sample `i` goes to `out[k * batch.len + i]`.
     ///
-    /// The widest vectors of the machine are used; no operation is fused with another, so that all
-    /// machines agree to the bit.
+    /// The widest vectors of the machine are used; all machines that multiply and add in one
+    /// instruction agree to the bit.
     pub fn run(&self, batch: &Batch<'_>, out: &mut [f64]) {
         REGISTERS.with_borrow_mut(|registers| {
             let count = registers.len().max(self.registers);

@@ -53,6 +53,14 @@ impl Language for Rust {
         format!("x.constant({})", Literal::f64_unsuffixed(value))
     }
 
+    fn fuses(&self) -> bool {
+        true
+    }
+
+    fn times(&self, first: &str, second: &str) -> String {
+        format!("{first}.times({second})")
+    }
+
     fn computes_trig(&self) -> bool {
         false
     }

@@ -16,7 +16,7 @@ use super::summary::summary;
 use crate::robot::{Output, Robot};
 
 /// Version of the contract with the runtime that emitted code asks for.
-const ABI: u32 = 2;
+const ABI: u32 = 3;
 
 /// The Rust source of a robot's module.
 ///

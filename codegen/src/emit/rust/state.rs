@@ -14,7 +14,7 @@ use crate::robot::{Output, Robot};
 /// A message if an angle is not Rust: a defect of the generator.
 pub fn state(robot: &Robot) -> Result<TokenStream, String> {
     let mut fields = TokenStream::new();
-    let mut bindings = TokenStream::new();
+    let (mut angles, mut pairs) = (vec![], vec![]);
     let mut names = TokenStream::new();
     for trig in trig(robot) {
         let text = trig.text();
@@ -22,11 +22,7 @@ pub fn state(robot: &Robot) -> Result<TokenStream, String> {
             |joint| format!("q[{joint}]"),
             |value| format!("q[0].splat({})", Literal::f64_unsuffixed(value)),
         );
-        let sum = parsed(&if trig.is_plain() {
-            sum
-        } else {
-            format!("({sum})")
-        })?;
+        angles.push(parsed(&sum)?);
         let mut pair = Vec::new();
         for (name, function) in [(&trig.sine, "sin"), (&trig.cosine, "cos")] {
             let Some(name) = name.as_ref().map(|name| format_ident!("{name}")) else {
@@ -38,8 +34,13 @@ pub fn state(robot: &Robot) -> Result<TokenStream, String> {
             names.extend(quote! { #name, });
             pair.push(quote! { #name });
         }
-        bindings.extend(quote! { let (#(#pair),*) = #sum.sin_cos(); });
+        pairs.push(quote! { (#(#pair),*) });
     }
+    let fours = pairs.chunks(4).zip(angles.chunks(4));
+    let bindings = fours.map(|(pairs, angles)| {
+        quote! { let [#(#pairs),*] = T::sines_and_cosines([#(#angles),*]); }
+    });
+    let bindings: TokenStream = bindings.collect();
     Ok(definition(robot, &fields, &bindings, &names))
 }
 

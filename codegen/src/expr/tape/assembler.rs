@@ -20,7 +20,7 @@ pub(super) struct Assembler<'a> {
 }
 
 impl<'a> Assembler<'a> {
-    pub(super) fn new(graph: &'a Graph, outputs: &[Expr]) -> Self {
+    pub(super) fn new(graph: &'a Graph, outputs: &[Expr], fused: Vec<bool>) -> Self {
         let count = graph.nodes().len();
         let mut stores = vec![Vec::new(); count];
         for (index, output) in outputs.iter().enumerate() {
@@ -38,7 +38,7 @@ impl<'a> Assembler<'a> {
         let remaining = uses(graph, outputs);
         Assembler {
             graph,
-            fused: fused(graph, &remaining),
+            fused,
             remaining,
             stores,
             place: vec![usize::MAX; count],
@@ -167,25 +167,4 @@ impl<'a> Assembler<'a> {
             })
             .collect()
     }
-}
-
-/// Which products enter one sum and nothing else; at most one product of each sum.
-fn fused(graph: &Graph, uses: &[usize]) -> Vec<bool> {
-    let mut fused = vec![false; uses.len()];
-    for (node, _) in graph
-        .nodes()
-        .iter()
-        .zip(uses)
-        .filter(|(_, uses)| **uses > 0)
-    {
-        if let Node::Add(a, b) | Node::Sub(a, b) = *node {
-            let product = [b, a].into_iter().map(Expr::node).find(|&operand| {
-                uses[operand] == 1 && matches!(graph.nodes()[operand], Node::Mul(..))
-            });
-            if let Some(product) = product {
-                fused[product] = true;
-            }
-        }
-    }
-    fused
 }

@@ -76,9 +76,15 @@ impl Run<'_> {
             Op::Add(a, b) => self.combine(step, [a, b, b], window, |x, y, _| x + y),
             Op::Sub(a, b) => self.combine(step, [a, b, b], window, |x, y, _| x - y),
             Op::Mul(a, b) => self.combine(step, [a, b, b], window, |x, y, _| x * y),
-            Op::MulAdd(a, b, c) => self.combine(step, [a, b, c], window, |x, y, z| x * y + z),
-            Op::MulSub(a, b, c) => self.combine(step, [a, b, c], window, |x, y, z| x * y - z),
-            Op::SubMul(a, b, c) => self.combine(step, [a, b, c], window, |x, y, z| z - x * y),
+            Op::MulAdd(a, b, c) => self.combine(step, [a, b, c], window, |x, y, z| {
+                Vector::<S>::fuse(x, y, z)
+            }),
+            Op::MulSub(a, b, c) => self.combine(step, [a, b, c], window, |x, y, z| {
+                Vector::<S>::fuse(x, y, -z)
+            }),
+            Op::SubMul(a, b, c) => self.combine(step, [a, b, c], window, |x, y, z| {
+                Vector::<S>::fuse(-x, y, z)
+            }),
             Op::Call(Function::Sine, a) => {
                 self.sin_cos(simd, a, [Some(target), None], window.width);
             }
