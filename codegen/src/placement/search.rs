@@ -19,27 +19,18 @@ pub struct Entry {
 /// Most rounds over all moves; the second finds little and the third next to nothing.
 const ROUNDS: usize = 4;
 
-/// Both reaches of a move are tried.
-const REACHES: [Reach; 2] = [Reach::There, Reach::Last];
-
 /// The form of every entry. From the link's own frame on, whatever saves operations is done:
 /// for a whole link, a column, a row of a link, one entry, in this order.
 pub fn choose(graph: &Graph, entries: &[Entry]) -> Vec<usize> {
     let mut search = Search::new(graph, entries);
     let moves = moves(entries);
-    let (mut in_vain, mut cost) = (0, search.needs.cost);
-    for (group, form) in std::iter::repeat_n(&moves, ROUNDS).flatten() {
-        for reach in REACHES {
-            search.attempt(group, *form, reach);
+    for _ in 0..ROUNDS {
+        let before = search.needs.cost;
+        for (group, form) in &moves {
+            search.attempt(group, *form, Reach::There);
+            search.attempt(group, *form, Reach::Last);
         }
-        // Once every move was tried on the same choice, none will do more.
-        in_vain = if search.needs.cost < cost {
-            0
-        } else {
-            in_vain + 1
-        };
-        cost = search.needs.cost;
-        if in_vain == moves.len() {
+        if search.needs.cost == before {
             break;
         }
     }
