@@ -4,7 +4,8 @@
 //! is long is long in every run; what the kernel, an interrupt or a hypervisor takes is taken at
 //! another step each time. So the fastest run of each step bounds the loop's own time from above,
 //! and the slowest of these is its worst step. Where the kernel counts them (Linux), its own changes
-//! of the running thread are read before and after every step.
+//! of the running thread are read before and after every step. A loop that only reads the clock, as
+//! long as a run, says what the machine takes of any program.
 
 use std::time::Instant;
 
@@ -42,6 +43,10 @@ pub fn print() {
         };
         println!("    {} took more than 50; {whose}", run.slow);
     }
+    let idle = idle(runs.iter().map(|run| run.wall.iter().sum()).max());
+    let (longest, times) = (idle.iter().max(), idle.len());
+    let longest = longest.map_or(0.0, |gap| *gap as f64 / 1e3);
+    println!("  a loop that does nothing, as long: more than 50 {times} times, worst {longest:.2}");
     let own: Vec<u64> = (0..STEPS)
         .filter_map(|i| runs.iter().map(|run| run.wall[i]).min())
         .collect();
@@ -71,6 +76,20 @@ fn run(mut own: Loop, kernel: &Kernel) -> Run {
         }
     }
     run
+}
+
+/// Gaps longer than [`SLOW_NS`] between two readings of the clock, ns, in a loop of so many ns.
+fn idle(length: Option<u64>) -> Vec<u64> {
+    let begin = Instant::now();
+    let (mut last, mut gaps) = (0, Vec::new());
+    while last < length.unwrap_or(0) {
+        let now = begin.elapsed().as_nanos() as u64;
+        if now - last > SLOW_NS {
+            gaps.push(now - last);
+        }
+        last = now;
+    }
+    gaps
 }
 
 fn row(nanoseconds: &[u64]) -> String {

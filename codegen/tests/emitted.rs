@@ -137,7 +137,8 @@ fn states(robot: &Robot) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// All outputs of the interpreter, rounded like C and Python, sample by sample, in the order of the functions, row by row.
+/// All outputs of the interpreter, rounded like C and Python, sample by sample, in the order of the
+/// functions, row by row.
 fn interpreted(robot: &Robot, states: &[Vec<f64>]) -> Vec<Vec<Vec<f64>>> {
     let (n, nb) = (robot.mechanism.driven, robot.base.parameters.len());
     let values = |values: &[Expr], state: &[f64]| {

@@ -4,7 +4,7 @@
 use std::f64::consts::TAU;
 
 use super::state::Bench;
-use super::stepwise::Outcome;
+use super::stepwise::{Named, Outcome};
 use crate::model::IdentificationModel;
 
 /// Periods that the motion must pass: a whole one, and a quarter in which it repeats.
@@ -39,7 +39,7 @@ impl Unrepeated {
 
 /// The effects among those found that have not been seen to repeat.
 pub(super) fn unrepeated(bench: &Bench<'_>, outcome: &Outcome) -> Vec<Unrepeated> {
-    let unrepeated = |named: &super::stepwise::Named| {
+    let unrepeated = |named: &Named| {
         let hypothesis = &bench.hypotheses[named.number];
         let per_turn = (bench.catalogue).repeats_per_turn(hypothesis, &named.shape)?;
         let &[joint] = hypothesis.joints.as_slice() else {
