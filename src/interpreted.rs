@@ -3,11 +3,11 @@
 use std::borrow::Cow;
 
 use idim_codegen::derive::ParameterKind;
-use idim_codegen::describe::{EdgesSpec, FreedomSpec, VelocitySpec, WeightsSpec};
+use idim_codegen::describe::{Description, EdgesSpec, FreedomSpec, VelocitySpec, WeightsSpec};
 use idim_codegen::emit::signals::{Signals, signals};
 use idim_codegen::expr::tape::{Batch, Tape};
 use idim_codegen::knowledge;
-use idim_codegen::mechanism;
+use idim_codegen::mechanism::{self, Mechanism};
 use idim_codegen::robot::{self, Robot};
 use idim_runtime::knowledge::{Knowledge, Term};
 use idim_runtime::model::{
@@ -41,7 +41,7 @@ impl Interpreter {
         let compiled = |output| compile(robot, &signals(robot, output));
         Interpreter {
             name: robot.mechanism.name.clone(),
-            joints: robot.mechanism.driven().iter().map(joint).collect(),
+            joints: joints(&robot.mechanism),
             columns: robot.base.parameters.iter().map(column).collect(),
             settings: settings(robot),
             knowledge: knowledge(robot),
@@ -119,14 +119,23 @@ fn compile(robot: &Robot, signals: &Signals) -> Compiled {
     }
 }
 
-fn joint(joint: &mechanism::Joint) -> Joint {
-    let kind = match joint.kind {
-        mechanism::JointKind::Revolute => JointKind::Revolute,
-        mechanism::JointKind::Prismatic => JointKind::Prismatic,
-    };
-    Joint {
+/// The driven joints, in the order of a log's columns.
+pub fn joints(mechanism: &Mechanism) -> Vec<Joint> {
+    let joint = |joint: &mechanism::Joint| Joint {
         name: Cow::Owned(joint.name.clone()),
-        kind,
+        kind: match joint.kind {
+            mechanism::JointKind::Revolute => JointKind::Revolute,
+            mechanism::JointKind::Prismatic => JointKind::Prismatic,
+        },
+    };
+    mechanism.driven().iter().map(joint).collect()
+}
+
+/// What leads from the drives to the joints.
+pub fn drives(description: &Description) -> Drives {
+    Drives {
+        gains: Cow::Owned(description.drives.gains.clone()),
+        coupling: Cow::Owned(description.drives.coupling.clone()),
     }
 }
 
@@ -154,7 +163,6 @@ fn presliding(robot: &Robot) -> Vec<Presliding> {
 
 fn settings(robot: &Robot) -> Settings {
     let spec = &robot.description.identify;
-    let drives = &robot.description.drives;
     Settings {
         fq_hz: spec.fq_hz,
         order: spec.order,
@@ -179,10 +187,7 @@ fn settings(robot: &Robot) -> Settings {
             FreedomSpec::Parameters => Freedom::Parameters,
             FreedomSpec::Mean => Freedom::Mean,
         }),
-        drives: Drives {
-            gains: Cow::Owned(drives.gains.clone()),
-            coupling: Cow::Owned(drives.coupling.clone()),
-        },
+        drives: drives(&robot.description),
     }
 }
 

@@ -199,11 +199,44 @@ fn read_folder(folder: &Path) -> Result<Vec<Source>, BuildError> {
 /// # Errors
 /// [`BuildError::Description`] and [`BuildError::Base`].
 pub fn read(path: &Path) -> Result<Source, BuildError> {
+    open(path)?.derive()
+}
+
+/// A description with the texts that it was read from; its robot is still to be derived, which
+/// takes longer.
+#[derive(Clone, Debug)]
+pub struct Described {
+    /// What the texts say.
+    pub description: Description,
+    path: PathBuf,
+    texts: Vec<(String, String)>,
+    paths: Vec<PathBuf>,
+}
+
+impl Described {
+    /// Derives the robot.
+    ///
+    /// # Errors
+    /// [`BuildError::Base`].
+    pub fn derive(self) -> Result<Source, BuildError> {
+        Ok(Source {
+            file: name_of(&self.path),
+            texts: self.texts,
+            paths: self.paths,
+            robot: derive(self.description, &self.path.display().to_string())?,
+        })
+    }
+}
+
+/// Reads a description.
+///
+/// # Errors
+/// [`BuildError::Description`].
+pub fn open(path: &Path) -> Result<Described, BuildError> {
     let text = describe::text_of(path).map_err(BuildError::Description)?;
-    let file = name_of(path);
     let kind = describe::kind_of(path, &text).map_err(BuildError::Description)?;
     let folder = path.parent().unwrap_or(Path::new(""));
-    let loaded = RefCell::new((vec![(file.clone(), text.clone())], vec![path.to_owned()]));
+    let loaded = RefCell::new((vec![(name_of(path), text.clone())], vec![path.to_owned()]));
     let load = |named: &str| {
         let path = folder.join(named);
         let text = describe::text_of(&path).map_err(|all| list(&all))?;
@@ -212,14 +245,14 @@ pub fn read(path: &Path) -> Result<Source, BuildError> {
         loaded.1.push(path);
         Ok(text)
     };
-    let description = describe::read_text(&text, &path.display().to_string(), kind, &load);
-    let robot = derive(description, &path.display().to_string())?;
+    let description = describe::read_text(&text, &path.display().to_string(), kind, &load)
+        .map_err(BuildError::Description)?;
     let (texts, paths) = loaded.into_inner();
-    Ok(Source {
-        file,
+    Ok(Described {
+        description,
+        path: path.to_owned(),
         texts,
         paths,
-        robot,
     })
 }
 
@@ -236,14 +269,11 @@ pub fn read_texts(texts: &[(&str, &str)]) -> Result<Robot, BuildError> {
             .map(|(_, text)| (*text).to_owned())
             .ok_or_else(|| format!("{named} is not there"))
     };
-    derive(describe::read_text(text, file, kind, &load), file)
+    let description = describe::read_text(text, file, kind, &load);
+    derive(description.map_err(BuildError::Description)?, file)
 }
 
-fn derive(
-    description: Result<Description, Vec<Diagnostic>>,
-    file: &str,
-) -> Result<Robot, BuildError> {
-    let description = description.map_err(BuildError::Description)?;
+fn derive(description: Description, file: &str) -> Result<Robot, BuildError> {
     Robot::new(description).map_err(|source| BuildError::Base {
         file: file.to_owned(),
         source,

@@ -85,8 +85,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         return output::print(&listing());
     };
     let spinner = Spinner::new(arguments.quiet);
-    let robot = robot::derived(name)?;
-    let model = robot::model(name)?;
+    let (robot, model) = robot::both(name)?;
     let read = |names| read(model.as_ref(), names, arguments.map.as_deref(), &spinner);
     let (train, validate) = (read(&arguments.logs)?, read(&arguments.validate)?);
     let options = Options {

@@ -130,8 +130,7 @@ pub struct Arguments {
 /// [`Failure`]: a robot or file that cannot be read, limits that no motion keeps to, effects that are
 /// not known or cannot be told apart, a file that cannot be written.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let mut robot = robot::derived(&arguments.robot)?;
-    let mut model = robot::model(&arguments.robot)?;
+    let (mut robot, mut model) = robot::both(&arguments.robot)?;
     let parameters = arguments.parameters.as_deref();
     let given = parameters.map(|path| parameters::read(path, model.as_ref(), &robot));
     let mut values = given.transpose()?;

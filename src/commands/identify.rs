@@ -1,12 +1,12 @@
 //! `idim identify`: parameters from measured logs, by the three models side by side.
 
+mod logs;
+
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
-use idim::runtime::identify::{
-    Options, PriorUse, identify, instruments, payload, predict, series, settle_units,
-};
-use idim::runtime::log::{Companion, Log, LogSpec, ReadOptions, Recording};
+use idim::runtime::identify::{Options, PriorUse, identify, instruments, payload, predict, series};
+use idim::runtime::log::{Companion, Log, Recording};
 use idim::runtime::model::IdentificationModel;
 use idim::runtime::observe::ModelKind;
 use idim::runtime::report::{Identification, ModelResult, Role, html, payload_terminal, terminal};
@@ -15,7 +15,8 @@ use idim::runtime::settings::{Derivatives, Edges, Velocity, Weights};
 use super::predictions::Predictions;
 use super::progress::Spinner;
 use super::simulate::parameters;
-use super::{Failure, fits, gains, output, robot};
+use super::{Failure, gains, output, robot};
+use logs::{Reading, all_held, beginnings, recordings, settle};
 
 /// Arguments of `idim identify`.
 #[derive(Debug, clap::Args)]
@@ -209,12 +210,19 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         });
     }
     let spinner = Spinner::new(arguments.quiet);
-    let model = robot::model(&arguments.robot)?;
+    let robot = robot::open(&arguments.robot)?;
     let options = arguments.choices.options();
-    let known = arguments.known.known(&options, model.joints().len())?;
-    let map = arguments.map.as_deref();
-    let read = |logs| read(model.as_ref(), logs, (map, &options), &spinner);
-    let train = read(&arguments.logs)?;
+    let known = arguments.known.known(&options, robot.joints.len())?;
+    let reading = Reading::new(&robot, arguments.map.as_deref(), &spinner);
+    // Side by side on the threads that parse: a further one would only be in their way.
+    let (train, model) = rayon::join(|| reading.read(&arguments.logs), || robot.model());
+    let (model, mut train) = (model?, train?);
+    settle(model.as_ref(), &mut train, &options)?;
+    let read = |names| {
+        let mut logs = reading.read(names)?;
+        settle(model.as_ref(), &mut logs, &options)?;
+        Ok::<_, Failure>(logs)
+    };
     if let Some(known) = known {
         let (unloaded, loaded) = (
             recordings(&train)?,
@@ -329,60 +337,6 @@ pub fn draw(
         result.series.push(drawn);
     }
     Ok(())
-}
-
-fn read(
-    model: &dyn IdentificationModel,
-    names: &[String],
-    (map, options): (Option<&Path>, &Options),
-    spinner: &Spinner,
-) -> Result<Vec<(Log, Companion)>, Failure> {
-    let reading = ReadOptions {
-        require_torque: true,
-        companion: map.map(Path::to_owned),
-    };
-    let mut logs = Vec::with_capacity(names.len());
-    for name in names {
-        spinner.say(&format!("reading {name}"));
-        let spec: LogSpec = name.parse()?;
-        let drives = &model.settings().drives;
-        let (mut log, companion) = Log::read(&spec, model.joints(), drives, &reading)?;
-        if let Log::Held(recording) = &mut log {
-            settle_units(model, recording, &companion, options);
-            let off = fits::reference(model, recording, &companion)?;
-            recording.warnings.extend(off);
-        }
-        logs.push((log, companion));
-    }
-    Ok(logs)
-}
-
-/// What a page can show of logs: the beginning of long ones.
-fn beginnings(logs: &[Log]) -> Result<Vec<Recording>, Failure> {
-    const SHOWN: usize = 100_000;
-    logs.iter().map(|log| Ok(log.beginning(SHOWN)?)).collect()
-}
-
-/// The recordings of logs that are held in memory.
-fn all_held(logs: &[Log]) -> Result<Vec<Recording>, Failure> {
-    logs.iter().map(held).collect()
-}
-
-fn recordings(logs: &[(Log, Companion)]) -> Result<Vec<Recording>, Failure> {
-    logs.iter().map(|(log, _)| held(log)).collect()
-}
-
-fn held(log: &Log) -> Result<Recording, Failure> {
-    match log {
-        Log::Held(recording) => Ok(recording.clone()),
-        Log::Long(long) => Err(Failure::Usage {
-            message: format!(
-                "{} has {} samples: too many to hold at once, as this needs",
-                long.name, long.len
-            ),
-            help: "name parts of it, such as LOG@0..60".into(),
-        }),
-    }
 }
 
 /// `LOGSTEM_MODEL.csv.gz` for each validation log and model: t, tau1.. on the rows of the log.

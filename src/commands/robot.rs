@@ -2,10 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
+use idim::codegen::mechanism::Mechanism;
 use idim::codegen::{Robot, builder};
-use idim::interpreted::Interpreter;
+use idim::interpreted::{self, Interpreter};
 use idim::robots;
-use idim::runtime::model::IdentificationModel;
+use idim::runtime::model::{IdentificationModel, Joint};
+use idim::runtime::settings::Drives;
 
 use super::Failure;
 
@@ -42,15 +44,68 @@ pub fn derived(argument: &str) -> Result<Robot, Failure> {
     Ok(builder::read(Path::new(argument))?.robot)
 }
 
-/// The model: generated code of a built-in robot, the interpreter for a path.
+/// The derived robot and its model.
 ///
 /// # Errors
 /// [`Failure::UnknownRobot`], [`Failure::Description`].
-pub fn model(argument: &str) -> Result<Box<dyn IdentificationModel>, Failure> {
+pub fn both(argument: &str) -> Result<(Robot, Box<dyn IdentificationModel>), Failure> {
+    let robot = derived(argument)?;
+    let model: Box<dyn IdentificationModel> = match built_in(argument) {
+        Some(robot) => Box::new(robot.model),
+        None => Box::new(Interpreter::new(&robot)),
+    };
+    Ok((robot, model))
+}
+
+/// A robot of which is known what the reading of its logs needs; deriving its model takes longer
+/// and can go on beside it.
+pub struct Opened {
+    /// The driven joints.
+    pub joints: Vec<Joint>,
+    /// What leads from the drives to them.
+    pub drives: Drives,
+    source: Source,
+}
+
+enum Source {
+    BuiltIn(&'static robots::Robot),
+    File(Box<builder::Described>),
+}
+
+/// Reads `<ROBOT>` and derives nothing yet.
+///
+/// # Errors
+/// [`Failure::UnknownRobot`], [`Failure::Description`].
+pub fn open(argument: &str) -> Result<Opened, Failure> {
     if let Some(robot) = built_in(argument) {
-        return Ok(Box::new(robot.model));
+        return Ok(Opened {
+            joints: robot.model.joints().to_vec(),
+            drives: robot.model.settings().drives.clone(),
+            source: Source::BuiltIn(robot),
+        });
     }
-    Ok(Box::new(Interpreter::new(&derived(argument)?)))
+    if !is_path(argument) {
+        return Err(unknown(argument));
+    }
+    let described = builder::open(Path::new(argument))?;
+    Ok(Opened {
+        joints: interpreted::joints(&Mechanism::new(&described.description)),
+        drives: interpreted::drives(&described.description),
+        source: Source::File(Box::new(described)),
+    })
+}
+
+impl Opened {
+    /// The model: generated code of a built-in robot, the interpreter for a path.
+    ///
+    /// # Errors
+    /// [`Failure::Description`].
+    pub fn model(self) -> Result<Box<dyn IdentificationModel>, Failure> {
+        match self.source {
+            Source::BuiltIn(robot) => Ok(Box::new(robot.model)),
+            Source::File(described) => Ok(Box::new(Interpreter::new(&described.derive()?.robot))),
+        }
+    }
 }
 
 /// A description as it is written: its text, and that of the URDF that it names.

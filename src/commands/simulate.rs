@@ -88,8 +88,7 @@ impl Run {
 /// possible, a file that cannot be written.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let spinner = Spinner::new(arguments.quiet);
-    let model = robot::model(&arguments.robot)?;
-    let derived = robot::derived(&arguments.robot)?;
+    let (derived, model) = robot::both(&arguments.robot)?;
     let values = parameters::read(&arguments.parameters, model.as_ref(), &derived)?;
     let described = parameters::rigid(&derived);
     let source = if described.is_some() {

@@ -2,8 +2,54 @@
 
 use std::io::{self, BufRead, Read};
 
-/// Bytes of text per stretch: large against a line, small enough to stay in the cache.
-pub(super) const STRETCH: usize = 1 << 17;
+/// Bytes of text per stretch: large against a line, small enough to stay in the cache and to leave
+/// no thread waiting long for the last one.
+pub(super) const STRETCH: usize = 1 << 16;
+
+/// Whole lines.
+#[derive(Default)]
+pub(super) struct Stretch {
+    /// Text, and behind it room that is known already.
+    bytes: Vec<u8>,
+    len: usize,
+}
+
+impl Stretch {
+    /// The lines.
+    pub(super) fn text(&self) -> &[u8] {
+        self.bytes.get(..self.len).unwrap_or_default()
+    }
+
+    /// Starts anew with these bytes.
+    fn begin(&mut self, with: &[u8]) {
+        self.len = 0;
+        self.room(with.len()).copy_from_slice(with);
+        self.len = with.len();
+    }
+
+    /// The next bytes.
+    fn room(&mut self, len: usize) -> &mut [u8] {
+        let end = self.len + len;
+        if self.bytes.len() < end {
+            self.bytes.resize(end, 0);
+        }
+        self.bytes.get_mut(self.len..end).unwrap_or_default()
+    }
+
+    /// Reads up to `len` bytes more; whether there were as many.
+    fn read(&mut self, text: &mut dyn Read, len: usize) -> io::Result<bool> {
+        let end = self.len + len;
+        while self.len < end {
+            match text.read(self.room(end - self.len)) {
+                Ok(0) => return Ok(false),
+                Ok(read) => self.len += read,
+                Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+                Err(error) => return Err(error),
+            }
+        }
+        Ok(true)
+    }
+}
 
 /// A reader that ends its stretches behind line feeds.
 pub(super) struct Lines {
@@ -24,30 +70,30 @@ impl Lines {
 
     /// Fills `stretch` with whole lines; nothing is left when it stays empty. After an error, the
     /// stretch holds the whole lines before it, and the text has ended.
-    pub(super) fn fill(&mut self, stretch: &mut Vec<u8>) -> io::Result<()> {
-        stretch.clear();
-        stretch.append(&mut self.rest);
+    pub(super) fn fill(&mut self, stretch: &mut Stretch) -> io::Result<()> {
+        stretch.begin(&self.rest);
+        self.rest.clear();
         let mut outcome = Ok(());
-        let mut wanted = STRETCH;
         while !self.ended {
-            let missing = wanted.saturating_sub(stretch.len()).max(1);
-            match self.text.by_ref().take(missing as u64).read_to_end(stretch) {
-                Ok(read) => self.ended = read < missing,
+            match stretch.read(&mut self.text, STRETCH) {
+                Ok(full) => self.ended = !full,
                 Err(error) => {
                     self.ended = true;
                     outcome = Err(error);
                 }
             }
-            let end = memchr::memrchr(b'\n', stretch).map_or(0, |at| at + 1);
+            let end = memchr::memrchr(b'\n', stretch.text()).map_or(0, |at| at + 1);
             if outcome.is_err() {
-                stretch.truncate(end);
+                stretch.len = end;
             } else if end > 0 && !self.ended {
-                self.rest.extend_from_slice(&stretch[end..]);
-                stretch.truncate(end);
+                let rest = stretch.text().get(end..).unwrap_or_default();
+                self.rest.extend_from_slice(rest);
+                stretch.len = end;
+            }
+            // Otherwise, a line longer than a stretch.
+            if end > 0 {
                 break;
             }
-            // A line longer than a stretch.
-            wanted = stretch.len() + STRETCH;
         }
         outcome
     }
@@ -62,15 +108,16 @@ mod tests {
         for (line, count) in [(13, 40_000), (300_000, 3), (1, 300_000)] {
             let text = format!("{}\n", "x".repeat(line - 1)).repeat(count) + "tail";
             let mut lines = Lines::new(Box::new(io::Cursor::new(text.clone().into_bytes())));
-            let (mut found, mut stretch) = (Vec::new(), Vec::new());
+            let (mut found, mut stretch) = (Vec::new(), Stretch::default());
             loop {
                 lines.fill(&mut stretch).unwrap();
+                let stretch = stretch.text();
                 if stretch.is_empty() {
                     break;
                 }
                 let last = found.len() + stretch.len() == text.len();
                 assert!(last || stretch.ends_with(b"\n"));
-                found.extend_from_slice(&stretch);
+                found.extend_from_slice(stretch);
             }
             assert_eq!(found, text.as_bytes());
         }

@@ -15,7 +15,7 @@ use super::utf16::{self, Utf16};
 const LONGEST_HEADER: u64 = 1 << 20;
 
 /// Bytes per read: large enough that inflating and splitting run in long stretches.
-const BUFFER: usize = 1 << 17;
+const BUFFER: usize = 1 << 16;
 
 /// An open log behind its header.
 pub(super) struct Source {

@@ -6,11 +6,11 @@
 use std::io::{self, BufRead};
 use std::ops::Range;
 
-use rayon::iter::{IntoParallelRefMutIterator, ParallelIterator};
+use rayon::iter::{IndexedParallelIterator, IntoParallelRefMutIterator, ParallelIterator};
 
 use super::columns::Layout;
 use super::error::{Found, Problem};
-use super::lines::Lines;
+use super::lines::{Lines, Stretch};
 use super::parse::{Oddity, Parsed, Parser, unquoted};
 use super::source::{Content, Source};
 use super::spec::{FIRST_ROW, Part};
@@ -19,7 +19,7 @@ use super::spec::{FIRST_ROW, Part};
 const FEWEST_ROWS: usize = 10;
 
 /// More stretches than this in flight would only cost memory.
-const MOST_STRETCHES: usize = 48;
+const MOST_STRETCHES: usize = 96;
 
 /// Where rows go to.
 pub(super) trait Sink: Send {
@@ -126,7 +126,7 @@ fn read_text(
 
 /// Stretches that are read, parsed and put together at one go.
 struct Batch {
-    stretches: Vec<(Vec<u8>, Parsed)>,
+    stretches: Vec<(Stretch, Parsed)>,
     used: usize,
     /// Why reading ended behind the last stretch.
     error: Option<io::Error>,
@@ -134,7 +134,7 @@ struct Batch {
 
 impl Batch {
     fn new() -> Batch {
-        let stretches = (4 * rayon::current_num_threads()).min(MOST_STRETCHES);
+        let stretches = (8 * rayon::current_num_threads()).min(MOST_STRETCHES);
         Batch {
             stretches: (0..stretches).map(|_| Default::default()).collect(),
             used: 0,
@@ -148,9 +148,9 @@ impl Batch {
 
     fn fill(&mut self, lines: &mut Lines) {
         self.used = 0;
-        for (text, _) in &mut self.stretches {
-            self.error = lines.fill(text).err();
-            if text.is_empty() {
+        for (stretch, _) in &mut self.stretches {
+            self.error = lines.fill(stretch).err();
+            if stretch.text().is_empty() {
                 break;
             }
             self.used += 1;
@@ -162,16 +162,18 @@ impl Batch {
 
     fn parse(&mut self, parser: &Parser) {
         let used = self.stretches.get_mut(..self.used).unwrap_or_default();
+        // One by one: threads that take several at a time wait for each other at the end.
         used.par_iter_mut()
-            .for_each(|(text, parsed)| parser.parse(text, parsed));
+            .with_max_len(1)
+            .for_each(|(stretch, parsed)| parser.parse(stretch.text(), parsed));
     }
 
     fn merge(&mut self, progress: &mut Progress, sink: &mut dyn Sink) -> Found<()> {
-        for (text, parsed) in self.stretches.iter().take(self.used) {
+        for (stretch, parsed) in self.stretches.iter().take(self.used) {
             if progress.ended {
                 return Ok(());
             }
-            progress.merge(text, parsed, sink)?;
+            progress.merge(stretch.text(), parsed, sink)?;
         }
         match self.error.take() {
             Some(error) if !progress.ended => Err(Problem::Damaged {

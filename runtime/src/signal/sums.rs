@@ -114,7 +114,7 @@ fn weights(modes: Option<&Modes>, m: usize) -> Weights {
 #[inline(always)]
 fn accumulate<S: Simd>(simd: S, sums: &mut Sums<S>, weights: &Weights, x: S::f64s) {
     for (sum, weight) in sums.iter_mut().zip(weights) {
-        *sum = simd.add_f64s(*sum, simd.mul_f64s(simd.splat_f64s(*weight), x));
+        *sum = simd.mul_add_e_f64s(simd.splat_f64s(*weight), x, *sum);
     }
 }
 
@@ -125,8 +125,9 @@ pub(super) fn rotated<S: Simd>(simd: S, by: &State, state: &Sums<S>) -> Sums<S> 
     for k in 0..PAIRS {
         let (cos, sin) = (simd.splat_f64s(by[0][k]), simd.splat_f64s(by[1][k]));
         let (re, im) = (state[k], state[k + PAIRS]);
-        product[k] = simd.sub_f64s(simd.mul_f64s(cos, re), simd.mul_f64s(sin, im));
-        product[k + PAIRS] = simd.add_f64s(simd.mul_f64s(cos, im), simd.mul_f64s(sin, re));
+        let minus_sin = simd.neg_f64s(sin);
+        product[k] = simd.mul_add_e_f64s(minus_sin, im, simd.mul_f64s(cos, re));
+        product[k + PAIRS] = simd.mul_add_e_f64s(sin, re, simd.mul_f64s(cos, im));
     }
     product
 }
@@ -146,8 +147,7 @@ pub(super) fn weighted<S: Simd>(simd: S, weights: &Weights, state: &Sums<S>) -> 
     let mut half = [simd.splat_f64s(0.0); PAIRS];
     for (k, half) in half.iter_mut().enumerate() {
         let re = simd.mul_f64s(simd.splat_f64s(weights[k]), state[k]);
-        let im = simd.mul_f64s(simd.splat_f64s(weights[k + PAIRS]), state[k + PAIRS]);
-        *half = simd.add_f64s(re, im);
+        *half = simd.mul_add_e_f64s(simd.splat_f64s(weights[k + PAIRS]), state[k + PAIRS], re);
     }
     let [a, b, c, d] = half;
     simd.add_f64s(simd.add_f64s(a, c), simd.add_f64s(b, d))
