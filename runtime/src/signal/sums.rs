@@ -1,8 +1,9 @@
 //! Sums over the modes of a low-pass, of signals side by side.
 //!
-//! Every lane of a register holds another signal, and multiplications and additions are not fused,
-//! so that all machines agree to the bit. There are loops where closures would do: a closure that is
-//! not inlined runs without the registers of the machine.
+//! Every lane of a register holds another signal. A product is fused with the sum that it enters
+//! where the machine has an instruction for both, so that machines agree to rounding, not to the
+//! bit. There are loops where closures would do: a closure that is not inlined runs without the
+//! registers of the machine.
 
 use pulp::Simd;
 
