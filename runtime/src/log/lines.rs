@@ -122,4 +122,45 @@ mod tests {
             assert_eq!(found, text.as_bytes());
         }
     }
+
+    /// Gives few bytes at a time, is interrupted, and breaks at the end.
+    struct Broken {
+        text: io::Cursor<Vec<u8>>,
+        calls: usize,
+    }
+
+    impl Read for Broken {
+        fn read(&mut self, room: &mut [u8]) -> io::Result<usize> {
+            self.calls += 1;
+            if self.calls.is_multiple_of(3) {
+                return Err(io::ErrorKind::Interrupted.into());
+            }
+            let few = room.len().min(7);
+            match self.text.read(&mut room[..few])? {
+                0 => Err(io::ErrorKind::UnexpectedEof.into()),
+                read => Ok(read),
+            }
+        }
+    }
+
+    #[test]
+    fn whole_lines_before_an_error_are_kept_however_few_bytes_come_at_a_time() {
+        let whole = "0.001,-1.5\n".repeat(20_000);
+        let text = io::Cursor::new(format!("{whole}0.00").into_bytes());
+        let broken = Broken { text, calls: 0 };
+        let mut lines = Lines::new(Box::new(io::BufReader::with_capacity(5, broken)));
+        let (mut found, mut stretch) = (Vec::new(), Stretch::default());
+        let error = loop {
+            let outcome = lines.fill(&mut stretch);
+            found.extend_from_slice(stretch.text());
+            match outcome {
+                Ok(()) => assert!(!stretch.text().is_empty(), "the error was lost"),
+                Err(error) => break error,
+            }
+        };
+        assert_eq!(error.kind(), io::ErrorKind::UnexpectedEof);
+        assert_eq!(found, whole.as_bytes());
+        lines.fill(&mut stretch).unwrap();
+        assert!(stretch.text().is_empty(), "the text has ended");
+    }
 }

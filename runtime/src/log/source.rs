@@ -14,8 +14,8 @@ use super::utf16::{self, Utf16};
 /// A first line longer than this is no header, bytes.
 const LONGEST_HEADER: u64 = 1 << 20;
 
-/// Bytes per read: large enough that inflating and splitting run in long stretches.
-const BUFFER: usize = 1 << 16;
+/// Bytes per read: those of a stretch, which a buffer that is not larger lets through without a copy.
+const BUFFER: usize = super::lines::STRETCH;
 
 /// An open log behind its header.
 pub(super) struct Source {
