@@ -22,6 +22,7 @@ pub mod report;
 pub mod settings;
 pub mod signal;
 pub mod simulate;
+pub mod whole;
 
 pub use idim_lanes as lane;
 

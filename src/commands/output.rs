@@ -3,8 +3,8 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
+use idim_runtime::whole::Whole;
 use serde::Serialize;
-use tempfile::NamedTempFile;
 
 use super::Failure;
 
@@ -33,7 +33,7 @@ pub fn complain(message: &str) {
 /// # Errors
 /// [`Failure::Write`] when the folder or the file cannot be written.
 pub fn write_whole(path: &Path, text: &str) -> Result<(), Failure> {
-    persist(path, temporary(path, text)?)
+    place(path, temporary(path, text)?)
 }
 
 /// Writes files that belong together: none takes its place before all are written.
@@ -44,24 +44,18 @@ pub fn write_all_whole(texts: &[(PathBuf, String)]) -> Result<(), Failure> {
     let written = texts.iter().map(|(path, text)| temporary(path, text));
     let written = written.collect::<Result<Vec<_>, Failure>>()?;
     let mut pairs = texts.iter().zip(written);
-    pairs.try_for_each(|((path, _), file)| persist(path, file))
+    pairs.try_for_each(|((path, _), file)| place(path, file))
 }
 
-fn temporary(path: &Path, text: &str) -> Result<NamedTempFile, Failure> {
+fn temporary(path: &Path, text: &str) -> Result<Whole, Failure> {
     let failed = |source| failed(path, source);
-    let folder = path
-        .parent()
-        .filter(|folder| !folder.as_os_str().is_empty());
-    let mut file = NamedTempFile::new_in(folder.unwrap_or(Path::new("."))).map_err(failed)?;
+    let mut file = Whole::begin(path).map_err(failed)?;
     file.write_all(text.as_bytes()).map_err(failed)?;
-    readable_by_all(file.as_file()).map_err(failed)?;
     Ok(file)
 }
 
-fn persist(path: &Path, file: NamedTempFile) -> Result<(), Failure> {
-    let persisted = file.persist(path);
-    persisted.map_err(|error| failed(path, error.error))?;
-    Ok(())
+fn place(path: &Path, file: Whole) -> Result<(), Failure> {
+    file.place().map_err(|source| failed(path, source))
 }
 
 fn failed(path: &Path, source: std::io::Error) -> Failure {
@@ -69,18 +63,6 @@ fn failed(path: &Path, source: std::io::Error) -> Failure {
         path: path.to_owned(),
         source,
     }
-}
-
-/// Temporary files are private; results are as readable as any other file.
-#[cfg(unix)]
-fn readable_by_all(file: &std::fs::File) -> std::io::Result<()> {
-    use std::os::unix::fs::PermissionsExt;
-    file.set_permissions(std::fs::Permissions::from_mode(0o644))
-}
-
-#[cfg(not(unix))]
-fn readable_by_all(_: &std::fs::File) -> std::io::Result<()> {
-    Ok(())
 }
 
 /// A result as JSON to a file, or to standard output for `-`.

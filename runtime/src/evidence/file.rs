@@ -25,6 +25,7 @@ use super::bytes::{self, Reader};
 use super::checksum::Checksum;
 use super::error::FormatError;
 use super::{Evidence, EvidenceError};
+use crate::whole::Whole;
 
 const MAGIC: &[u8; 8] = b"IDIMEV\r\n";
 
@@ -69,15 +70,10 @@ impl Evidence {
             path: path.to_owned(),
             source,
         };
-        let folder = path
-            .parent()
-            .filter(|folder| !folder.as_os_str().is_empty());
-        let mut file =
-            tempfile::NamedTempFile::new_in(folder.unwrap_or(Path::new("."))).map_err(fail)?;
+        let mut file = Whole::begin(path).map_err(fail)?;
         file.write_all(&self.to_bytes()).map_err(fail)?;
-        file.as_file().sync_all().map_err(fail)?;
-        file.persist(path).map_err(|error| fail(error.error))?;
-        Ok(())
+        file.sync().map_err(fail)?;
+        file.place().map_err(fail)
     }
 
     /// Reads an evidence file.

@@ -7,6 +7,7 @@ use flate2::Compression;
 use flate2::write::GzEncoder;
 
 use super::error::LogError;
+use crate::whole::Whole;
 
 /// Writes named columns, such as `t, tau1, tau2`, as CSV; compressed if the path ends in `.gz`.
 ///
@@ -37,19 +38,7 @@ pub fn write(path: &Path, columns: &[(&str, &[f64])]) -> Result<(), LogError> {
 }
 
 fn replace(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
-    let directory = path
-        .parent()
-        .filter(|parent| !parent.as_os_str().is_empty());
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".idim-");
-    #[cfg(unix)]
-    {
-        // Temporary files are private by default; this one becomes an ordinary file.
-        use std::os::unix::fs::PermissionsExt;
-        builder.permissions(std::fs::Permissions::from_mode(0o666));
-    }
-    let temporary = builder.tempfile_in(directory.unwrap_or(Path::new(".")))?;
-    let mut out = BufWriter::with_capacity(1 << 16, temporary);
+    let mut out = BufWriter::with_capacity(1 << 16, Whole::begin(path)?);
     if path
         .extension()
         .is_some_and(|extension| extension.eq_ignore_ascii_case("gz"))
@@ -64,9 +53,8 @@ fn replace(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Result<()>) 
     } else {
         content(&mut out)?;
     }
-    let temporary = out.into_inner().map_err(io::IntoInnerError::into_error)?;
-    temporary.persist(path)?;
-    Ok(())
+    let file = out.into_inner().map_err(io::IntoInnerError::into_error)?;
+    file.place()
 }
 
 fn rows_to(out: &mut dyn Write, columns: &[(&str, &[f64])], rows: usize) -> io::Result<()> {
