@@ -1,5 +1,7 @@
 //! Many signals of equal length, and how a filter reads them: a few at a time, side by side.
 
+use std::ops::Range;
+
 use pulp::Simd;
 use wide::f64x2;
 
@@ -17,8 +19,19 @@ pub trait Signals: Sync {
     /// Samples of each signal.
     fn samples(&self) -> usize;
 
+    /// The samples `range` of a signal, in the pieces that they are stored in; nothing of a signal
+    /// that there is not.
+    fn pieces(&self, signal: usize, range: Range<usize>) -> impl Iterator<Item = &[f64]>;
+
     /// Writes `signal` into one lane of `out`, which has as many places as there are samples.
-    fn copy_to_lane(&self, signal: usize, lane: usize, out: &mut [[f64; LANES]]);
+    fn copy_to_lane(&self, signal: usize, lane: usize, out: &mut [[f64; LANES]]) {
+        let mut places = out.iter_mut();
+        for piece in self.pieces(signal, 0..self.samples()) {
+            for (value, place) in piece.iter().zip(places.by_ref()) {
+                place[lane] = *value;
+            }
+        }
+    }
 }
 
 impl Signals for [Vec<f64>] {
@@ -30,13 +43,8 @@ impl Signals for [Vec<f64>] {
         self.iter().map(Vec::len).min().unwrap_or(0)
     }
 
-    fn copy_to_lane(&self, signal: usize, lane: usize, out: &mut [[f64; LANES]]) {
-        let Some(series) = self.get(signal) else {
-            return;
-        };
-        for (place, value) in out.iter_mut().zip(series) {
-            place[lane] = *value;
-        }
+    fn pieces(&self, signal: usize, range: Range<usize>) -> impl Iterator<Item = &[f64]> {
+        self.get(signal).and_then(|s| s.get(range)).into_iter()
     }
 }
 
@@ -61,13 +69,37 @@ impl Signals for Planar {
         self.samples
     }
 
-    fn copy_to_lane(&self, signal: usize, lane: usize, out: &mut [[f64; LANES]]) {
-        for (block, places) in self.blocks.iter().zip(out.chunks_mut(BLOCK)) {
-            let length = places.len();
-            for (place, value) in places.iter_mut().zip(block.iter().skip(signal * length)) {
-                place[lane] = *value;
-            }
-        }
+    fn pieces(&self, signal: usize, range: Range<usize>) -> impl Iterator<Item = &[f64]> {
+        let numbered = self.blocks.iter().enumerate();
+        numbered.filter_map(move |(number, block)| {
+            let length = block.len() / self.count.max(1);
+            let at = |sample: usize| sample.saturating_sub(number * BLOCK).min(length);
+            let own = signal * length;
+            block.get(own + at(range.start)..own + at(range.end))
+        })
+    }
+}
+
+/// A stretch of signals.
+#[derive(Clone, Debug)]
+pub(super) struct Stretch<'a, S: ?Sized> {
+    pub signals: &'a S,
+    pub range: Range<usize>,
+}
+
+impl<S: Signals + ?Sized> Signals for Stretch<'_, S> {
+    fn count(&self) -> usize {
+        self.signals.count()
+    }
+
+    fn samples(&self) -> usize {
+        self.range.len()
+    }
+
+    fn pieces(&self, signal: usize, range: Range<usize>) -> impl Iterator<Item = &[f64]> {
+        let start = self.range.start;
+        let range = start + range.start..start + range.end;
+        self.signals.pieces(signal, range)
     }
 }
 
