@@ -1,29 +1,60 @@
 //! Sums over long vectors and small symmetric systems.
 
+use pulp::Arch;
+
 /// Smallest share of a column's square that must be left of it for it to count as its own.
 pub(super) const OWN: f64 = 1e-10;
 
+/// Partial sums of a product: as many as keep the widest vectors busy, and on all machines the same.
+const PARTS: usize = 32;
+
+/// Those that few rows are left to.
+const FEW: usize = 8;
+
 /// \\( a^T b \\) of two vectors of one length.
 pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let (a, b) = (a.chunks_exact(8), b.chunks_exact(8));
-    let rest: f64 = a
-        .remainder()
-        .iter()
-        .zip(b.remainder())
-        .map(|(x, y)| x * y)
-        .sum();
-    let mut sums = [0.0; 8];
-    for (a, b) in a.zip(b) {
-        for lane in 0..8 {
-            sums[lane] += a[lane] * b[lane];
-        }
+    Arch::new().dispatch(
+        #[inline(always)]
+        || {
+            let (wide, tail) = a.as_chunks::<PARTS>();
+            let (other, rest) = b.as_chunks::<PARTS>();
+            let mut sums = [0.0; PARTS];
+            for (a, b) in wide.iter().zip(other) {
+                add_products(&mut sums, a, b);
+            }
+            let mut few: [f64; FEW] = std::array::from_fn(|k| {
+                (sums[k] + sums[k + FEW]) + (sums[k + 2 * FEW] + sums[k + 3 * FEW])
+            });
+            let (wide, tail) = tail.as_chunks::<FEW>();
+            let (other, rest) = rest.as_chunks::<FEW>();
+            for (a, b) in wide.iter().zip(other) {
+                add_products(&mut few, a, b);
+            }
+            add_products(&mut few, tail, rest);
+            let [a, b, c, d, e, f, g, h] = few;
+            ((a + b) + (c + d)) + ((e + f) + (g + h))
+        },
+    )
+}
+
+/// Adds products to as many sums as there are at most.
+#[inline(always)]
+fn add_products(sums: &mut [f64], a: &[f64], b: &[f64]) {
+    for ((sum, a), b) in sums.iter_mut().zip(a).zip(b) {
+        *sum += a * b;
     }
-    sums.iter().sum::<f64>() + rest
 }
 
 /// \\( y \leftarrow y + s x \\).
 pub(super) fn add_scaled(y: &mut [f64], s: f64, x: &[f64]) {
-    y.iter_mut().zip(x).for_each(|(y, x)| *y += s * x);
+    Arch::new().dispatch(
+        #[inline(always)]
+        || {
+            for (y, x) in y.iter_mut().zip(x) {
+                *y += s * x;
+            }
+        },
+    );
 }
 
 /// The solution of \\( G x = g \\), G symmetric and positive semidefinite (m x m, row-major), by
@@ -120,6 +151,17 @@ fn two_sided_tail(z: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn products_of_any_length_are_summed_once() {
+        // Whole numbers: every order of summing gives the same.
+        for len in 0..200 {
+            let a: Vec<f64> = (0..len).map(|k| f64::from(k % 17) - 8.0).collect();
+            let b: Vec<f64> = (0..len).map(|k| f64::from(k * k % 23) - 11.0).collect();
+            let one_by_one: f64 = a.iter().zip(&b).map(|(a, b)| a * b).sum();
+            assert_eq!(dot(&a, &b), one_by_one, "{len}");
+        }
+    }
 
     #[test]
     fn a_column_that_repeats_another_is_none() {
