@@ -30,45 +30,41 @@ pub(super) fn variables() -> Vec<&'static str> {
     }
     names.extend(["time"; 6]);
     names.extend(["position"; 4]);
-    names.extend(["load"; 5]);
     names.push("acceleration");
+    names.extend(["load"; 5]);
     names
 }
 
 /// Harmonics of a turn.
 const HARMONICS: usize = 14;
 
-/// Columns of a joint along a track, decimated: offset, speed laws, harmonics of q, direction, slow
-/// time, end zones, torque. A prismatic joint has the harmonics of its stroke.
+/// Columns of a joint along a track, decimated.
 pub(super) fn columns(
     track: &Track,
     predicted: &Predicted,
     (joint, kind): (usize, JointKind),
 ) -> Vec<Vec<f64>> {
-    let signals = track.signals(predicted);
-    let (q, qd, qdd) = (&signals.q[joint], &signals.qd[joint], &signals.qdd[joint]);
+    let mut all = of_motion(track, (joint, kind));
+    all.extend(of_torque(track, predicted, joint));
+    all
+}
+
+/// Those that its motion decides: offset, speed laws, harmonics of q, direction, slow time, end
+/// zones, acceleration. A prismatic joint has the harmonics of its stroke.
+pub(super) fn of_motion(track: &Track, (joint, kind): (usize, JointKind)) -> Vec<Vec<f64>> {
+    let motion = &track.motion;
+    let (q, qdd) = (&motion.q[joint], &motion.qdd[joint]);
     let (low, high) = range(q);
-    let top = qd.iter().fold(1e-9_f64, |top, v| top.max(v.abs()));
     let stroke = (high - low).max(1e-9);
     let turn = match kind {
         JointKind::Revolute => 1.0,
         JointKind::Prismatic => TAU / stroke,
     };
     let x: Vec<f64> = q.iter().map(|q| 2.0 * (q - low) / stroke - 1.0).collect();
-    let v: Vec<f64> = qd.iter().map(|v| v / top).collect();
-    let band = signals.dead_band[joint] / top;
-    let side: Vec<f64> = v.iter().map(|v| (v / band).clamp(-1.0, 1.0)).collect();
-    let long = signals.t.last().copied().unwrap_or(1.0).max(1e-9);
-    let s: Vec<f64> = signals.t.iter().map(|t| t / long).collect();
-    let tau = &signals.tau_model[joint];
-    let (least, most) = range(tau);
-    let largest = most.max(-least).max(1e-9);
-    let load: Vec<f64> = signals.tau_rigid[joint]
-        .iter()
-        .map(|t| t / largest)
-        .collect();
-    let tau: Vec<f64> = tau.iter().map(|t| t / largest).collect();
-    let rate = central_difference(&tau, signals.rate_hz);
+    let [v, side] = speeds(track, joint);
+    let t = track.times();
+    let long = t.last().copied().unwrap_or(1.0).max(1e-9);
+    let s: Vec<f64> = t.iter().map(|t| t / long).collect();
     let mut all: Vec<Vec<f64>> = Vec::new();
     let mut of = |f: &dyn Fn(usize) -> f64| all.push((0..q.len()).map(f).collect());
     of(&|_| 1.0);
@@ -95,24 +91,44 @@ pub(super) fn columns(
         of(&|t| (x[t] - edge).max(0.0));
         of(&|t| (-x[t] - edge).max(0.0));
     }
+    of(&|t| qdd[t]);
+    track.decimate(&all)
+}
+
+/// Those that follow the predicted torque.
+pub(super) fn of_torque(track: &Track, predicted: &Predicted, joint: usize) -> Vec<Vec<f64>> {
+    let tau = &predicted.model[joint];
+    let (least, most) = range(tau);
+    let largest = most.max(-least).max(1e-9);
+    let rigid = &predicted.rigid[joint];
+    let load: Vec<f64> = rigid.iter().map(|t| t / largest).collect();
+    let tau: Vec<f64> = tau.iter().map(|t| t / largest).collect();
+    let rate = central_difference(&tau, track.motion.rate_hz);
+    let [_, side] = speeds(track, joint);
+    let mut all: Vec<Vec<f64>> = Vec::new();
+    let mut of = |f: &dyn Fn(usize) -> f64| all.push((0..tau.len()).map(f).collect());
     of(&|t| tau[t]);
     of(&|t| load[t].abs() * side[t]);
     of(&|t| (tau[t] / 0.05).tanh());
     of(&|t| (tau[t] - 0.6).max(0.0) + (tau[t] + 0.6).min(0.0));
     of(&|t| rate[t]);
-    of(&|t| qdd[t]);
     track.decimate(&all)
+}
+
+/// The velocity of a joint as a part of its largest, and its sign.
+fn speeds(track: &Track, joint: usize) -> [Vec<f64>; 2] {
+    let qd = &track.motion.qd[joint];
+    let top = qd.iter().fold(1e-9_f64, |top, v| top.max(v.abs()));
+    let band = track.dead_band[joint];
+    let side = qd.iter().map(|v| (v / band).clamp(-1.0, 1.0)).collect();
+    [qd.iter().map(|v| v / top).collect(), side]
 }
 
 /// The columns that change slowly in time alone, decimated: offset and friction that drift.
 pub(super) fn slow(track: &Track, joint: usize) -> Vec<Vec<f64>> {
-    let qd = &track.motion.qd[joint];
-    let top = qd.iter().fold(1e-9_f64, |top, v| top.max(v.abs()));
-    let band = track.dead_band[joint];
-    let side: Vec<f64> = qd.iter().map(|v| (v / band).clamp(-1.0, 1.0)).collect();
-    let v: Vec<f64> = qd.iter().map(|v| v / top).collect();
-    let long = qd.len().max(1) as f64;
-    let s: Vec<f64> = (0..qd.len()).map(|k| k as f64 / long).collect();
+    let [v, side] = speeds(track, joint);
+    let long = v.len().max(1) as f64;
+    let s: Vec<f64> = (0..v.len()).map(|k| k as f64 / long).collect();
     track.decimate(&drifts(&s, &side, &v))
 }
 

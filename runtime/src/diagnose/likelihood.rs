@@ -7,6 +7,7 @@ use std::ops::Range;
 use faer::Mat;
 use rayon::prelude::*;
 
+use super::linear::{add_scaled, dot, solve};
 use super::noise::{Noise, ORDER, covariance, of_rows, reflections};
 
 /// Share of a column's square below which it repeats others.
@@ -32,22 +33,23 @@ pub(super) fn noise(
     let masked =
         |rows: &[f64]| -> Vec<f64> { rows.iter().zip(&mask).map(|(r, m)| r * m).collect() };
     let unit = |rows: Vec<f64>| -> Option<Vec<f64>> {
-        let length = super::linear::dot(&rows, &rows).sqrt();
+        let length = dot(&rows, &rows).sqrt();
         (length > 0.0).then(|| rows.into_iter().map(|r| r / length).collect())
     };
     let mut all: Vec<Vec<f64>> = columns.iter().filter_map(|c| unit(masked(c))).collect();
-    let own = independent(&all);
+    let y = masked(y);
+    let (own, left) = projected(&all, &y, segments);
     all = own
         .into_iter()
         .map(|k| std::mem::take(&mut all[k]))
         .collect();
-    all.push(masked(y));
+    all.push(y);
     let lags: Vec<Mat<f64>> = (0..=ORDER)
         .into_par_iter()
         .map(|lag| product(&all, segments, lag))
         .collect();
     let rows = mask.iter().sum::<f64>() - segments.len() as f64 * ORDER as f64;
-    let start = reflections(&covariance(&left(all.clone()), &mask, segments));
+    let start = reflections(&covariance(&left, &mask, segments));
     let start: [f64; ORDER] = start.map(|r| r.clamp(-0.97, 0.97).atanh());
     let cost =
         |free: &[f64; ORDER]| restricted(&lags, rows, free).map_or(f64::INFINITY, |(cost, _)| cost);
@@ -57,7 +59,7 @@ pub(super) fn noise(
         // Rounding is all that is left of the columns: the noise of what they leave.
         None => {
             let share = 1.0 - (all.len() - 1) as f64 / rows.max(all.len() as f64);
-            of_rows(&left(all.clone()), &mask, segments, share.max(0.1))
+            of_rows(&left, &mask, segments, share.max(0.1))
         }
     }
 }
@@ -75,26 +77,27 @@ fn product(all: &[Vec<f64>], segments: &[Range<usize>], lag: usize) -> Mat<f64> 
     Mat::from_fn(m, m, |i, k| 0.5 * (sum[(i, k)] + sum[(k, i)]))
 }
 
-/// The first of columns of unit length that the ones before them do not span.
-fn independent(columns: &[Vec<f64>]) -> Vec<usize> {
-    let mut basis: Vec<Vec<f64>> = Vec::new();
+/// The first of columns of unit length that the ones before them do not span, and what they leave of
+/// y. By the sums of products of the columns: their rounding is far below [`OWN`].
+fn projected(columns: &[Vec<f64>], y: &[f64], segments: &[Range<usize>]) -> (Vec<usize>, Vec<f64>) {
+    let gram = product(columns, segments, 0);
+    let m = columns.len();
+    let gram: Vec<f64> = (0..m * m).map(|k| gram[(k / m, k % m)]).collect();
+    let mut left = y.to_vec();
     let mut own = Vec::new();
-    for (k, column) in columns.iter().enumerate() {
-        let mut v = column.clone();
-        for _ in 0..2 {
-            for q in &basis {
-                let share = super::linear::dot(q, &v);
-                super::linear::add_scaled(&mut v, -share, q);
-            }
-        }
-        let left = super::linear::dot(&v, &v);
-        if left > OWN {
-            v.iter_mut().for_each(|v| *v /= left.sqrt());
-            basis.push(v);
+    // The second time for what rounding kept of them.
+    for _ in 0..2 {
+        let right: Vec<f64> = columns.iter().map(|column| dot(column, &left)).collect();
+        let shares = solve(&gram, &vec![1.0; m], &right, OWN);
+        let shares = columns.iter().zip(shares).enumerate();
+        let shares = shares.filter_map(|(k, (column, share))| Some((k, column, share?)));
+        own.clear();
+        for (k, column, share) in shares {
+            add_scaled(&mut left, -share, column);
             own.push(k);
         }
     }
-    own
+    (own, left)
 }
 
 /// What all columns but the last leave of the last, by ordinary least squares.
@@ -106,17 +109,17 @@ pub(super) fn left(mut all: Vec<Vec<f64>>) -> Vec<f64> {
     for mut v in all {
         for _ in 0..2 {
             for q in &basis {
-                let share = super::linear::dot(q, &v);
-                super::linear::add_scaled(&mut v, -share, q);
+                let share = dot(q, &v);
+                add_scaled(&mut v, -share, q);
             }
         }
-        let length = super::linear::dot(&v, &v).sqrt();
+        let length = dot(&v, &v).sqrt();
         if !length.is_normal() {
             continue;
         }
         v.iter_mut().for_each(|v| *v /= length);
-        let share = super::linear::dot(&v, &y);
-        super::linear::add_scaled(&mut y, -share, &v);
+        let share = dot(&v, &y);
+        add_scaled(&mut y, -share, &v);
         basis.push(v);
     }
     y
@@ -147,7 +150,7 @@ fn restricted(lags: &[Mat<f64>], rows: f64, free: &[f64; ORDER]) -> Option<(f64,
             let terms = factors.iter().zip(lags).map(|(f, lag)| f * lag[(i, k)]);
             let sum = ridge + terms.sum::<f64>();
             let (row, other) = (&lower[i * m..i * m + k], &lower[k * m..k * m + k]);
-            let rest = sum - super::linear::dot(row, other);
+            let rest = sum - dot(row, other);
             lower[i * m + k] = if i > k {
                 rest / lower[k * m + k]
             } else if rest > 0.0 {
@@ -216,6 +219,31 @@ fn simplex(start: [f64; ORDER], cost: impl Fn(&[f64; ORDER]) -> f64) -> [f64; OR
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_columns_leave_is_what_they_leave_one_by_one() {
+        let len = 2000;
+        let wave = |n: usize| -> Vec<f64> {
+            let size = (2.0 / len as f64).sqrt();
+            let turn = n as f64 * std::f64::consts::TAU / len as f64;
+            (0..len).map(|t| size * (turn * t as f64).sin()).collect()
+        };
+        let mixed = |a: Vec<f64>, b: Vec<f64>| -> Vec<f64> {
+            a.iter().zip(b).map(|(a, b)| 0.6 * a + 0.8 * b).collect()
+        };
+        // The third is spanned by the two before it; the fourth almost.
+        let mut almost = wave(2);
+        add_scaled(&mut almost, 0.01, &wave(5));
+        let columns = [wave(1), wave(2), mixed(wave(1), wave(2)), almost];
+        let y: Vec<f64> = (0..len).map(|t| ((t * t) % 97) as f64 / 97.0).collect();
+        let (own, rest) = projected(&columns, &y, &[0..700, 700..len]);
+        assert_eq!(own, [0, 1, 3]);
+        let [first, second, _, almost] = columns;
+        let orthogonal = left(vec![first, second, almost, y]);
+        for (a, b) in rest.iter().zip(orthogonal) {
+            assert!((a - b).abs() < 1e-12, "{a} against {b}");
+        }
+    }
 
     #[test]
     fn columns_do_not_bias_the_colour() {

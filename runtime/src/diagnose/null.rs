@@ -95,6 +95,10 @@ pub(super) fn null(
         .filter_map(|(track, rows)| find(track, rows))
         .collect();
     let mut noise = unknown_noise(joined);
+    let of_motion = match repeats.is_empty() {
+        true => generic_of_motion(model, instruments),
+        false => Vec::new(),
+    };
     let mut generic: Vec<Vec<Vec<f64>>> = Vec::new();
     // What changes slowly does not repeat and is no noise either.
     let slow = match repeats.is_empty() {
@@ -108,7 +112,7 @@ pub(super) fn null(
         let product = joined.product(&parameters);
         if repeats.is_empty() {
             let predicted = instruments.predict(model, &parameters);
-            generic = generic_columns(model, instruments, &predicted);
+            generic = with_torque(&of_motion, instruments, &predicted);
         }
         noise.par_iter_mut().enumerate().for_each(|(joint, noise)| {
             let y = joined.measured(joint);
@@ -193,12 +197,8 @@ fn slow_columns(joined: &Joined) -> Vec<Vec<Vec<f64>>> {
     (0..joined.joints()).map(of_joint).collect()
 }
 
-/// Columns of the generic model over all logs, and those of the null model.
-fn generic_columns(
-    model: &dyn IdentificationModel,
-    joined: &Joined,
-    predicted: &[Predicted],
-) -> Vec<Vec<Vec<f64>>> {
+/// Columns of the null model over all logs, and those of the generic model that the motion decides.
+fn generic_of_motion(model: &dyn IdentificationModel, joined: &Joined) -> Vec<Vec<Vec<f64>>> {
     let pulses = joined.reversals();
     let of_joint = |(joint, kind): (usize, &crate::model::Joint)| {
         let base = (0..model.columns().len()).flat_map(|k| joined.base(k));
@@ -207,11 +207,8 @@ fn generic_columns(
             .map(|(_, rows)| rows)
             .collect();
         let mut own: Vec<Vec<f64>> = Vec::new();
-        for (track, predicted) in joined.tracks.iter().zip(predicted) {
-            append(
-                &mut own,
-                generic::columns(track, predicted, (joint, kind.kind)),
-            );
+        for track in &joined.tracks {
+            append(&mut own, generic::of_motion(track, (joint, kind.kind)));
         }
         all.extend(own);
         all.push(pulses[joint].clone());
@@ -219,6 +216,22 @@ fn generic_columns(
     };
     let joints = model.joints().par_iter().enumerate();
     joints.map(of_joint).collect()
+}
+
+/// These and those that follow a predicted torque.
+fn with_torque(
+    of_motion: &[Vec<Vec<f64>>],
+    joined: &Joined,
+    predicted: &[Predicted],
+) -> Vec<Vec<Vec<f64>>> {
+    let of_joint = |(joint, of_motion): (usize, &Vec<Vec<f64>>)| {
+        let mut own: Vec<Vec<f64>> = Vec::new();
+        for (track, predicted) in joined.tracks.iter().zip(predicted) {
+            append(&mut own, generic::of_torque(track, predicted, joint));
+        }
+        [of_motion.clone(), own].concat()
+    };
+    of_motion.par_iter().enumerate().map(of_joint).collect()
 }
 
 /// Puts the columns of another log below those so far.

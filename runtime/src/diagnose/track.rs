@@ -202,6 +202,11 @@ impl Track {
         }
     }
 
+    /// Time of each sample since the beginning of the log, s.
+    pub fn times(&self) -> &[f64] {
+        &self.t
+    }
+
     /// Time of a row since the beginning of the log, s.
     pub fn row_time(&self, row: usize) -> f64 {
         self.kept.get(row).map_or(0.0, |&sample| self.t[sample])
