@@ -73,23 +73,24 @@ impl Bench<'_> {
         let made = self.instruments_of(number, shapes, asking);
         let beside = self.beside_measured(number, shapes, asking);
         let white = |column: &Decimated| self.train.whiten(&column.torque, self.noise);
-        let candidate = |(place, columns): (usize, Vec<Decimated>)| {
-            let columns: Vec<Sparse> = columns.iter().map(white).collect();
-            let known = columns.iter().map(|column| self.null.shares(column, 0));
-            let beside = beside.get(place).and_then(|columns| columns.first());
-            let beside = beside.map(white);
-            Candidate {
+        let columns: Vec<Vec<Sparse>> =
+            made.iter().map(|c| c.iter().map(white).collect()).collect();
+        let beside: Vec<Sparse> = beside.iter().filter_map(|c| c.first().map(white)).collect();
+        let all: Vec<&Sparse> = columns.iter().flatten().chain(&beside).collect();
+        let mut known = self.null.shares_of(&all);
+        let own = all.len() - beside.len();
+        let mut beside = beside.into_iter().zip(known.split_off(own));
+        let mut known = known.into_iter();
+        let candidates = shapes.iter().zip(columns);
+        candidates
+            .map(|(shape, columns)| Candidate {
                 number,
-                shape: shapes[place].clone(),
-                known: known.collect(),
+                shape: shape.clone(),
+                known: known.by_ref().take(columns.len()).collect(),
                 columns,
-                beside: beside.map(|column| {
-                    let shares = self.null.shares(&column, 0);
-                    (column, shares)
-                }),
-            }
-        };
-        made.into_iter().enumerate().map(candidate).collect()
+                beside: beside.next(),
+            })
+            .collect()
     }
 
     /// What a candidate gains in a system that grew from the null model.

@@ -15,6 +15,9 @@ const DETERMINED: f64 = 1e-7;
 /// Share of its instrument's own part that a column must have: less is no instrument for it.
 const STRONG: f64 = 0.1;
 
+/// Rows of every joint that are multiplied with many columns while they are in cache.
+const PART: usize = 256;
+
 /// A column of whitened rows: what it is on each joint that it acts on. The rows of prior
 /// knowledge come after those of the last joint, as one more.
 #[derive(Clone, Debug, Default)]
@@ -228,6 +231,25 @@ impl System {
             .collect()
     }
 
+    /// \\( Q^T z \\) of several columns of the logs' rows at once. The basis is longer than a cache: a
+    /// part of its rows serves them all before the next is fetched.
+    pub fn shares_of(&self, instruments: &[&Sparse]) -> Vec<Vec<f64>> {
+        let mut all = vec![vec![0.0; self.basis.len()]; instruments.len()];
+        for start in (0..self.rows).step_by(PART) {
+            for (place, q) in self.basis.iter().enumerate() {
+                for (shares, instrument) in all.iter_mut().zip(instruments) {
+                    for (joint, values) in &instrument.0 {
+                        let part = start..values.len().min(start + PART);
+                        let values = values.get(part).unwrap_or_default();
+                        let own = &q[joint * self.rows + start..][..values.len()];
+                        shares[place] += dot(own, values);
+                    }
+                }
+            }
+        }
+        all
+    }
+
     /// What columns would gain, by their instruments. `known` holds, for each, its shares of the
     /// first columns of the basis, from [`System::shares`] of a system that this one grew from; it
     /// may be empty.
@@ -309,6 +331,28 @@ mod tests {
         // The error of each row is 2 * noise, of variance 4/12; rows of variance one are assumed.
         assert!((found - 1.0).abs() < 3.0 * sigma, "{found} +- {sigma}");
         assert!((sigma - (2.0 / len as f64).sqrt()).abs() < 0.05 * sigma);
+    }
+
+    #[test]
+    fn shares_of_several_columns_are_those_of_each() {
+        let len = 1100;
+        let mut random = 7_u64;
+        let y = noise(&mut random, 2 * len);
+        let mut column = |joint: usize| Sparse(vec![(joint, noise(&mut random, len))]);
+        let pairs: Vec<Pair> = (0..5)
+            .map(|k| column(k % 2))
+            .map(|column| (column.clone(), column))
+            .collect();
+        let both = Sparse([column(0).0, column(1).0].concat());
+        let system = System::new(len, y).with(&pairs);
+        let columns = [both, column(1), Sparse::default()];
+        let all = system.shares_of(&columns.iter().collect::<Vec<_>>());
+        for (column, shares) in columns.iter().zip(all) {
+            let alone = system.shares(column, 0);
+            assert_eq!(shares.len(), alone.len());
+            let mut pairs = shares.iter().zip(&alone);
+            assert!(pairs.all(|(a, b)| (a - b).abs() < 1e-12));
+        }
     }
 
     #[test]
