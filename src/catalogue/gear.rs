@@ -9,7 +9,7 @@
 //! along the motion, and c is what the gear answers: a spring and a damper, or the stops of its
 //! play.
 
-use super::along::{Along, Displacement, Sensitivity};
+use super::along::{Along, Displacement};
 
 /// Samples over which M, C and K are taken as constant.
 const HELD: usize = 8;
@@ -31,21 +31,21 @@ pub(super) struct Link<'a> {
 impl<'a> Link<'a> {
     /// The link of a joint; `None` if it has no inertia that its drive could feel.
     pub fn of(along: &'a Along<'_>, joint: usize) -> Option<Link<'a>> {
-        let Sensitivity {
-            position,
-            velocity,
-            acceleration,
-        } = along.link_sensitivity(joint);
         let load = along.carried().get(joint)?;
-        let (m, c, k) = (&acceleration[joint], &velocity[joint], &position[joint]);
-        let mut sorted: Vec<f64> = m.iter().step_by(HELD).copied().collect();
-        sorted.sort_by(f64::total_cmp);
-        let mass = sorted.get(sorted.len() / 2).copied()?;
-        let at = |i: usize| [m[i].max(LEAST_MASS * mass), c[i], k[i]];
+        let carried = along.carried_by(joint);
+        let mut held: Vec<[f64; 3]> = (0..load.len()).step_by(HELD).map(carried).collect();
+        let mut masses: Vec<f64> = held.iter().map(|[m, ..]| *m).collect();
+        let middle = masses.len() / 2;
+        if masses.is_empty() {
+            return None;
+        }
+        let mass = *masses.select_nth_unstable_by(middle, f64::total_cmp).1;
+        held.iter_mut()
+            .for_each(|[m, ..]| *m = m.max(LEAST_MASS * mass));
         (mass > 0.0).then(|| Link {
             load,
             rate_hz: along.signals.rate_hz,
-            held: (0..load.len()).step_by(HELD).map(at).collect(),
+            held,
             mass,
         })
     }

@@ -21,6 +21,7 @@ mod guide;
 mod memory;
 mod position;
 mod reach;
+mod sensitivity;
 #[cfg(test)]
 mod tests;
 mod whole;
