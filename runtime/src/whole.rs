@@ -16,11 +16,13 @@ pub struct Whole {
 }
 
 impl Whole {
-    /// Begins the file that shall stand at `path`.
+    /// Begins the file that shall stand at `path`, or where the link at `path` leads.
     ///
     /// # Errors
     /// If its folder is missing or cannot be written.
     pub fn begin(path: &Path) -> io::Result<Self> {
+        // The file would take the place of a link, too: of `/dev/stdout`, for one.
+        let path = path.canonicalize().unwrap_or_else(|_| path.to_owned());
         let mut builder = tempfile::Builder::new();
         builder.prefix(".idim-");
         #[cfg(unix)]
@@ -29,13 +31,12 @@ impl Whole {
             use std::os::unix::fs::PermissionsExt;
             builder.permissions(std::fs::Permissions::from_mode(0o666));
         }
-        let file = if is_device(path) {
+        let file = if is_device(&path) {
             builder.tempfile()?
         } else {
             let folder = path.parent().filter(|it| !it.as_os_str().is_empty());
             builder.tempfile_in(folder.unwrap_or(Path::new(".")))?
         };
-        let path = path.to_owned();
         Ok(Self { file, path })
     }
 
@@ -107,6 +108,21 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         write(folder.path(), "text").unwrap_err();
         assert!(folder.path().is_dir());
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn link_stays_and_the_file_that_it_leads_to_is_replaced() {
+        let folders = [tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap()];
+        let (link, file) = (
+            folders[0].path().join("link"),
+            folders[1].path().join("file"),
+        );
+        write(&file, "old").unwrap();
+        std::os::unix::fs::symlink(&file, &link).unwrap();
+        write(&link, "new").unwrap();
+        assert!(link.is_symlink() && !file.is_symlink());
+        assert_eq!(std::fs::read_to_string(&file).unwrap(), "new");
     }
 
     #[cfg(unix)]

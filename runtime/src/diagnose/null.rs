@@ -229,7 +229,7 @@ fn with_torque(
         for (track, predicted) in joined.tracks.iter().zip(predicted) {
             append(&mut own, generic::of_torque(track, predicted, joint));
         }
-        [of_motion.clone(), own].concat()
+        of_motion.iter().cloned().chain(own).collect()
     };
     of_motion.par_iter().enumerate().map(of_joint).collect()
 }
